@@ -22,6 +22,9 @@ from pipeline.extensions import extension_versions
 SMALL = 8 << 20
 """Bytes of a file that a person writes: settings, a mapping, a manifest."""
 
+BUNDLED = ("demo", "demo_suite")
+"""Names of the sites that come with Kouros: one record as it was, and the demonstration's suite of eleven motions."""
+
 _PACKAGE = Path(__file__).resolve().parent
 
 

@@ -42,15 +42,21 @@ def _print_summary(summary: "Summary", wanted: bool) -> None:
 
 
 @click.command()
-@click.option("--folder", default="kouros-demo", show_default=True, type=click.Path(file_okay=False, path_type=Path))
+@click.argument("place", metavar="[FOLDER]", required=False, type=click.Path(file_okay=False, path_type=Path))
+@click.option("--folder", type=click.Path(file_okay=False, path_type=Path), help="The same; default: kouros-demo.")
 @dry_run("Assess what the folder has; say what would be made where it has nothing")
 @as_json
 @click.pass_obj
-def demo(options: Options, folder: Path, dry_run: bool, as_json: bool) -> None:
+def demo(options: Options, place: Path | None, folder: Path | None, dry_run: bool, as_json: bool) -> None:
     """Run the whole job on the bundled collection and site, and print the report's path.
+
+    FOLDER is where it keeps its settings, database and reports; kouros-demo if none is given.
 
     Example: kouros demo
     """
+    if place is not None and folder is not None:
+        raise click.UsageError("name the folder once: FOLDER or --folder")
+    folder = place or folder or Path("kouros-demo")
     from pipeline.night.run import run as job
     from pipeline.operations.job_monitor import watched
     from pipeline.operations.secrets import hider
