@@ -197,7 +197,8 @@ def small_text(file: Path) -> str:
 def resource(*parts: str) -> Path:
     """Return the path of a bundled file or folder, such as ``resource("templates", "gallery.html")``.
 
-    A wheel carries ``schemas``, ``templates`` and ``site_motions`` inside the package; a checkout has them beside it.
+    A wheel carries ``schemas``, ``templates``, ``site_motions`` and the units of systemd inside the package; a checkout
+    has them beside it.
 
     raises : FileNotFoundError, naming both places looked in
     """

@@ -72,16 +72,27 @@ def demo(options: Options, place: Path | None, folder: Path | None, dry_run: boo
 
 @click.command()
 @click.argument("folder", default=".", type=click.Path(file_okay=False, path_type=Path))
+@click.option("--systemd", is_flag=True, help="Also write a service and a timer of systemd, for every night.")
 @dry_run("Say what would be made")
-def init(folder: Path, dry_run: bool) -> None:
+def init(folder: Path, systemd: bool, dry_run: bool) -> None:
     """Make a commented kouros.toml, an empty site folder and the database.
 
+    With --systemd, kouros.service and kouros.timer are written into the folder too, with the paths of this machine;
+    where a kouros.toml is there already, only they are.
+
+    \b
     Example: kouros init museum
+    Example: kouros init museum --systemd
     """
     from pipeline.tools.initialise import initialise
+    from pipeline.tools.systemd_units import write_units
 
-    for made in initialise(folder, dry_run=dry_run):
+    units = write_units(folder, dry_run=dry_run) if systemd else []
+    begun = [] if systemd and (folder / "kouros.toml").exists() else initialise(folder, dry_run=dry_run)
+    for made in [*begun, *units]:
         click.echo(f"{'would make' if dry_run else 'made'} {made}")
+    if units:
+        click.echo("Read them, then, as root: cp them into /etc/systemd/system and systemctl enable --now kouros.timer")
     if dry_run:
         say_dry(wanted_json=False)
 
