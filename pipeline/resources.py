@@ -22,6 +22,9 @@ from pipeline.extensions import extension_versions
 SMALL = 8 << 20
 """Bytes of a file that a person writes: settings, a mapping, a manifest."""
 
+BUNDLED = ("demo", "demo_suite")
+"""Names of the sites that come with Kouros: one record as it was, and the demonstration's suite of eleven motions."""
+
 _PACKAGE = Path(__file__).resolve().parent
 
 
@@ -196,7 +199,8 @@ def small_text(file: Path) -> str:
 def resource(*parts: str) -> Path:
     """Return the path of a bundled file or folder, such as ``resource("templates", "gallery.html")``.
 
-    A wheel carries ``schemas``, ``templates`` and ``site_motions`` inside the package; a checkout has them beside it.
+    A wheel carries ``schemas``, ``templates``, ``site_motions`` and the units of systemd inside the package; a checkout
+    has them beside it.
 
     raises : FileNotFoundError, naming both places looked in
     """

@@ -71,7 +71,9 @@ def respond(
         ``fidelity`` says of each row whether it came from one: what lies outside of it, or where it is not good enough,
         is integrated. At fidelity "bound" ``low`` and ``high`` follow, between which the first output lies for certain
         (in any direction where the angle is None). Each output holds its upper bound then, or is empty where it has
-        none; a yes, or a count, is only what is certain, and ``error`` is high - low.
+        none; a yes, or a count, is only what is certain, and ``error`` is high - low. The parameters come last, a
+        column each, those included that were left out and have a value by default. ``attrs`` holds "model",
+        "motion" (its name), "motion_hash" and "units": the unit of each column that has one, "-" for a ratio.
 
     Raises
     ------
@@ -86,7 +88,20 @@ def respond(
     import pandas as pd
 
     numerics = Numerics(fidelity, azimuth_step, tolerance)
-    return pd.DataFrame(answer(model, motion, parameters, numerics, angle=angle, tail=tail, charts=charts))
+    found = answer(model, motion, parameters, numerics, angle=angle, tail=tail, charts=charts)
+    row = model_named(model)
+    # NaN throughout is a parameter that is left out.
+    used = {name: values for name, values in prepare(row, parameters).items() if not np.isnan(values).all()}
+    table = pd.DataFrame({**found, **used})
+    units = {q.name: q.unit for q in (*row.gives, *row.needs) if q.name in table}
+    first = row.gives[0].unit
+    units |= {name: first for name in ("error", "low", "high") if name in table} | {"angle": "degree"}
+    table.attrs.update({**_told(model, motion), "units": units})
+    return table
+
+
+def _told(model: str, motion: Motion) -> dict[str, str]:
+    return {"model": model, "motion": motion.name, "motion_hash": motion.hash}
 
 
 def answer(
@@ -164,7 +179,8 @@ def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) 
     Returns
     -------
     pandas.DataFrame
-        ``t`` [s] and the model's own columns, one row a sample of the motion.
+        ``t`` [s] and the model's own columns, one row a sample of the motion.  ``attrs`` holds "model", "motion" (its
+        name), "motion_hash" and "parameters" (SI).
 
     Raises
     ------
@@ -180,4 +196,6 @@ def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) 
     one = single(row, parameters, "trace follows one object at a time")
     two = row.directions == 2 or (row.directions == 0 and one["directions"] == 2.0)
     columns = row.trace(motion.excitation(None if two else angle, 0.0), one)
-    return pd.DataFrame({"t": motion.dt * np.arange(motion.samples), **columns})
+    table = pd.DataFrame({"t": motion.dt * np.arange(motion.samples), **columns})
+    table.attrs.update({**_told(model, motion), "parameters": {k: v for k, v in one.items() if not np.isnan(v)}})
+    return table

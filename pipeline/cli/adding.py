@@ -91,8 +91,9 @@ def add(
     Example: kouros motions add CI.CLC..HN?.mseed CI.CLC.xml --site site_motions/site
     """
     from pipeline.motions.proposing import Answers
-    from pipeline.operations.workspace import BUNDLED, UsageError, folder_of_site
+    from pipeline.operations.workspace import UsageError, folder_of_site
     from pipeline.report import Units
+    from pipeline.resources import BUNDLED
     from pipeline.tools.adding import AddWish, described
     from pipeline.tools.adding import add as job
 

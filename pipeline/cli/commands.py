@@ -43,15 +43,21 @@ def _print_summary(summary: "Summary", wanted: bool) -> None:
 
 
 @click.command()
-@click.option("--folder", default="kouros-demo", show_default=True, type=click.Path(file_okay=False, path_type=Path))
+@click.argument("place", metavar="[FOLDER]", required=False, type=click.Path(file_okay=False, path_type=Path))
+@click.option("--folder", type=click.Path(file_okay=False, path_type=Path), help="The same; default: kouros-demo.")
 @dry_run("Assess what the folder has; say what would be made where it has nothing")
 @as_json
 @click.pass_obj
-def demo(options: Options, folder: Path, dry_run: bool, as_json: bool) -> None:
+def demo(options: Options, place: Path | None, folder: Path | None, dry_run: bool, as_json: bool) -> None:
     """Run the whole job on the bundled collection and site, and print the report's path.
+
+    FOLDER is where it keeps its settings, database and reports; kouros-demo if none is given.
 
     Example: kouros demo
     """
+    if place is not None and folder is not None:
+        raise click.UsageError("name the folder once: FOLDER or --folder")
+    folder = place or folder or Path("kouros-demo")
     from pipeline.night.run import run as job
     from pipeline.operations.job_monitor import watched
     from pipeline.operations.secrets import hider
@@ -67,16 +73,27 @@ def demo(options: Options, folder: Path, dry_run: bool, as_json: bool) -> None:
 
 @click.command()
 @click.argument("folder", default=".", type=click.Path(file_okay=False, path_type=Path))
+@click.option("--systemd", is_flag=True, help="Also write a service and a timer of systemd, for every night.")
 @dry_run("Say what would be made")
-def init(folder: Path, dry_run: bool) -> None:
+def init(folder: Path, systemd: bool, dry_run: bool) -> None:
     """Make a commented kouros.toml, an empty site folder and the database.
 
+    With --systemd, kouros.service and kouros.timer are written into the folder too, with the paths of this machine;
+    where a kouros.toml is there already, only they are.
+
+    \b
     Example: kouros init museum
+    Example: kouros init museum --systemd
     """
     from pipeline.tools.initialise import initialise
+    from pipeline.tools.systemd_units import write_units
 
-    for made in initialise(folder, dry_run=dry_run):
+    units = write_units(folder, dry_run=dry_run) if systemd else []
+    begun = [] if systemd and (folder / "kouros.toml").exists() else initialise(folder, dry_run=dry_run)
+    for made in [*begun, *units]:
         click.echo(f"{'would make' if dry_run else 'made'} {made}")
+    if units:
+        click.echo("Read them, then, as root: cp them into /etc/systemd/system and systemctl enable --now kouros.timer")
     if dry_run:
         say_dry(wanted_json=False)
 

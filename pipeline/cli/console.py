@@ -3,6 +3,7 @@
 import re
 import sys
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import ExitStack
 from math import isnan
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, TextIO
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 _STEERING = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
+
+_COMPILING = "compiling models"
 
 
 class Console:
@@ -39,8 +42,12 @@ class Console:
         self._tasks: dict[str, Any] = {}
         self._last: dict[str, int] = {}
         self._plain = verbose or not sys.stderr.isatty()
+        self._entered = ExitStack()
 
     def __enter__(self) -> Self:
+        from pipeline.records.compiling import told_of_compiling
+
+        self._entered.enter_context(told_of_compiling(self._compiling))
         if not self.quiet and not self._plain:
             from rich.console import Console as Rich
             from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -54,8 +61,17 @@ class Console:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._entered.close()
         if self._bars is not None:
             self._bars.stop()
+
+    def _compiling(self, done: int, begun: int) -> None:
+        """Say that the models are made ready for this machine, a minute in which nothing else may move."""
+        if self._bars is not None:
+            self.step(_COMPILING, done, begun)
+        elif not (self.quiet or _COMPILING in self._last):
+            self._last[_COMPILING] = begun
+            print(f"{_COMPILING}: once for each version of Kouros", file=sys.stderr, flush=True)
 
     def step(self, what: str, done: int, total: int) -> None:
         """Show how much of a step is finished.
@@ -67,7 +83,7 @@ class Console:
         done, total : int
             How many are finished, and of how many.
         """
-        if done in (0, total):
+        if done in (0, total) and what != _COMPILING:
             note("step", what=what, done=done, total=total)
         if self.quiet:
             return

@@ -14,8 +14,10 @@ from typing import Any
 
 import numba
 import numpy as np
+from numba.core import event
 
 from pipeline.quantities import Array
+from pipeline.records.compiling import tell_of_compiling
 
 FIRST = np.int64(0)
 """An index to begin with: for a literal number or truth value as an argument numba compiles the callee once more."""
@@ -104,6 +106,23 @@ def cache_folder() -> str:
     """Return the folder of the compiled code."""
     return str(_CONFIG.CACHE_DIR)
 
+
+class _Compilations(event.Listener):  # type: ignore[misc]
+    """Counts what is compiled: numba compiles one function at a time, whatever thread wants it."""
+
+    def __init__(self) -> None:
+        self._begun = self._ended = 0
+
+    def on_start(self, event: Any) -> None:  # noqa: ARG002 - as numba calls it
+        self._begun += 1
+        tell_of_compiling(self._ended, self._begun)
+
+    def on_end(self, event: Any) -> None:  # noqa: ARG002
+        self._ended += 1
+        tell_of_compiling(self._ended, self._begun)
+
+
+event.register("numba:compile", _Compilations())
 
 # error_model="numpy": a division by zero gives inf, as in the arrays around it.  Nothing is reordered: the order of
 # operations decides overturning.

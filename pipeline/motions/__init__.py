@@ -5,24 +5,28 @@
     from pipeline.motions import read_motion, read_site
 
     read_motion("site_motions/malibu")    # the processed motions of a manifest, in its order
-    read_site("site_motions/malibu")      # the same with levels, measures and who answers for them
+    read_motion("CI.CLC..HNE.mseed")      # that of a record, from its file and those that belong to it
+    read_motion("demo")                   # that of the site that comes with Kouros
+    read_site("site_motions/malibu")      # a site's with levels, measures and who answers for them
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pipeline.motions.by_name import read_motion
     from pipeline.motions.errors import MotionError
     from pipeline.motions.intensity import measures
     from pipeline.motions.manifest import Manifest, load_manifest, manifest_schema
-    from pipeline.motions.site import Level, Site, SiteMotion, read_motion, read_site
+    from pipeline.motions.site import Level, Site, SiteMotion, read_site
     from pipeline.motions.summary import summaries
 
 _HOMES = {
     "MotionError": "errors",
     "measures": "intensity",
     **dict.fromkeys(("Manifest", "load_manifest", "manifest_schema"), "manifest"),
-    **dict.fromkeys(("Level", "Site", "SiteMotion", "read_motion", "read_site"), "site"),
+    "read_motion": "by_name",
+    **dict.fromkeys(("Level", "Site", "SiteMotion", "read_site"), "site"),
     "summaries": "summary",
 }
 

@@ -219,6 +219,26 @@ def _unnamed(folder: Path, leave: set[Path], unusable: list[Unusable]) -> list[t
     names = [name for name in names if not any(part.startswith(".") for part in name.split("/"))]
     if len(paths) > MOST:
         unusable.append(Unusable(folder.name, f"holds {len(paths):,} files, of which the first {MOST:,} are looked at"))
+    return records_of(folder, names, unusable)
+
+
+def records_of(folder: Path, names: Sequence[str], unusable: list[Unusable]) -> list[tuple[str, Record]]:
+    """Return the records that files hold together, with the names that they are given.
+
+    Parameters
+    ----------
+    folder : Path
+        In which the files are.
+    names : sequence of str
+        Of the files, relative to the folder; StationXML among them brings counts to an acceleration.
+    unusable : list of Unusable
+        What is no record, or not a whole one, is added to it.
+
+    Returns
+    -------
+    list of (str, Record)
+        In the order of the files.
+    """
     responses: dict[str, set[str]] = {}
     traces: list[tuple[str, list[Any]]] = []
     for name in names:

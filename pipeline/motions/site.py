@@ -300,7 +300,7 @@ def carry(motion: Motion, table: FloorTable) -> Motion:
     return passed(1) if table.modes is None else refined(passed, TRANSMITTED)
 
 
-def read_motion(path: str | Path, kept: Path | None = None) -> list[Motion]:
+def motions_of(path: str | Path, kept: Path | None = None) -> list[Motion]:
     """Return the processed motions of a site's folder or manifest file, in the manifest's order.
 
     Parameters
@@ -313,7 +313,7 @@ def read_motion(path: str | Path, kept: Path | None = None) -> list[Motion]:
     Returns
     -------
     list of Motion
-        Those of the ground; floors are passed on by ``transmit``.
+        Those of the ground.
 
     Raises
     ------

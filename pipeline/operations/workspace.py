@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from pipeline.cache import KINDS, Cache
 from pipeline.errors import InputError, KourosError
 from pipeline.operations.dry_run import SCRATCH, read_only
-from pipeline.resources import resource, sweep
+from pipeline.resources import BUNDLED, resource, sweep
 
 if TYPE_CHECKING:
     from pipeline.analysis.house.matching import HouseRules
@@ -214,10 +214,6 @@ def near(name: str, known: Collection[str]) -> str:
     """
     close = get_close_matches(name, known, n=3)
     return f"; did you mean {' or '.join(map(repr, close))}?" if close else ""
-
-
-BUNDLED = ("demo", "demo_suite")
-"""Names of the sites that come with Kouros: one record as it was, and the demonstration's suite of eleven motions."""
 
 
 def site_folder(home: Path, name: str) -> Path:

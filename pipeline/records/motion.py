@@ -6,12 +6,14 @@ import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pipeline.errors import InputError
-from pipeline.quantities import Array, real_array, real_number
+from pipeline.quantities import Array, G, real_array, real_number
+from pipeline.records import notebook
 
 STEPS = (1e-9, 1e6)
 """s, the shortest and the longest time step of a motion: beyond them its rates leave the range of numbers."""
@@ -237,6 +239,48 @@ class Motion:
             [factor * v for v in self.start],
             None if self.v_max is None else factor * self.v_max,
         )
+
+    def _repr_html_(self) -> str:
+        peaks = np.abs(self.acceleration).max(axis=1)
+        named = [(axis, peak, row) for axis, peak, row in zip("xyz", peaks, self.acceleration, strict=True)]
+        rows = {
+            "duration": [f"{self.duration:g} s, {self.samples:,} samples of {self.dt:g} s"],
+            "largest acceleration": [f"{axis}: {peak:.3g} m/s2 ({peak / G:.3g} g)" for axis, peak, _ in named],
+            "source": [self.source] if self.source else [],
+            "steps": self.steps,
+        }
+        pictures = "".join(
+            f"<div>{axis} {notebook.small_picture(row, f'acceleration {axis}, up to {peak:.3g} m/s2')}</div>"
+            for axis, peak, row in named
+        )
+        return notebook.table(self.name, {head: lines for head, lines in rows.items() if lines}) + pictures
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the acceleration in x, y and z over time, one below another, with matplotlib.
+
+        Parameters
+        ----------
+        axes : array of matplotlib Axes, shape (3,), optional
+            Where to draw; None: in a new figure.
+
+        Returns
+        -------
+        ndarray of matplotlib Axes, shape (3,)
+            In m/s2 over s.
+
+        Raises
+        ------
+        KourosError
+            Where matplotlib is not installed.
+        """
+        where = notebook.axes_for(3, axes)
+        t = self.dt * np.arange(self.samples)
+        for at, name, values in zip(where, "xyz", self.acceleration, strict=True):
+            at.plot(t, values, linewidth=0.6, color="black")
+            at.set_ylabel(f"{name} (m/s²)")
+        where[0].set_title(self.name.replace("$", r"\$"))
+        where[-1].set_xlabel("time (s)")
+        return where
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -82,12 +82,12 @@ def respond_on_site(
 
 def _motions(site: str, settings: "Settings | None") -> Sequence[Motion]:
     from pipeline.kernels import user_cache
-    from pipeline.motions.site import read_motion, read_site
+    from pipeline.motions.site import motions_of, read_site
 
     folder = site_folder(Path(), site)
     if settings is None:
         kept = user_cache("motions")
-        motions = read_motion(folder, kept=kept)
+        motions = motions_of(folder, kept=kept)
         Cache(kept).prune()
         return motions
     # Processed once for the nights and for this.

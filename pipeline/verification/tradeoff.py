@@ -24,7 +24,7 @@ from pipeline.collection.inventory import read_inventory
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import SENSITIVE
-from pipeline.motions.site import read_motion
+from pipeline.motions.by_name import read_motion
 from pipeline.operations.workspace import UsageError, charts_of, folder_of_site, open_workspace
 from pipeline.quantities import Array
 from pipeline.records import Axis, Chart, Columns, Curve, Item, Model, Motion, Numerics, Progress, Scene

@@ -313,7 +313,8 @@ def test_the_table_of_a_bound(name: str) -> None:
     model = model_named(name)
     table = respond(name, random_motion(31), fidelity="bound", **{k: np.full(3, v) for k, v in VALID[name].items()})
     outputs = [q.name for q in model.gives]
-    assert list(table.columns) == [*outputs, "error", "fidelity", "note", "angle", "low", "high"]
+    used = [q.name for q in model.needs if q.name in VALID[name] or q.default is not None]
+    assert list(table.columns) == [*outputs, "error", "fidelity", "note", "angle", "low", "high", *used]
     assert (table[outputs[0]] == table["high"]).all()
     assert (table["error"] == table["high"] - table["low"]).all()
     assert (table["low"] <= table["high"]).all()

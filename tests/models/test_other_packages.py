@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from pipeline.models import MODELS, model_named
-from pipeline.motions.site import read_motion
+from pipeline.motions.by_name import read_motion
 from pipeline.operations.report_status import last_good
 from pipeline.quantities import G
 from pipeline.records import Item

@@ -6,8 +6,9 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from pipeline.models.common import smallest_push
 from pipeline.motions.blas import one_thread
+from pipeline.motions.by_name import read_motion
 from pipeline.motions.manifest import FloorTable
-from pipeline.motions.site import carry, measured, read_motion
+from pipeline.motions.site import carry, measured
 from pipeline.resources import resource
 
 FLOOR = FloorTable(name="2", height_ratio=0.6, period_s=0.5, method="modal", damping=0.05, stiffness_ratio=5.0, modes=3)

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.kernels import cache_folder
+from tests.warm import kouros_process
 
 from .conftest import command, environment
 
@@ -100,6 +101,31 @@ def test_systemd_accepts_the_units(placed: Callable[[str], str], tmp_path: Path)
     level = re.search(r"Overall exposure level for kouros.service: ([\d.]+)", told.stdout)
     assert level is not None, told.stderr
     assert float(level[1]) < 4.0
+
+
+@pytest.mark.parametrize("name", ["museum", "a 100% 'museum' \\"])
+def test_the_units_of_a_workspace_name_this_machines_places(tmp_path: Path, name: str) -> None:
+    """Whatever its folder is called, systemd reads that very folder from them; nothing is written over."""
+    folder = tmp_path / name
+    done = kouros_process(("init", name, "--systemd"), tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert {path.name for path in folder.iterdir()} >= {"kouros.toml", "kouros.service", "kouros.timer"}
+    again = kouros_process(("init", name, "--systemd"), tmp_path)
+    assert (again.returncode, "there already" in again.stderr) == (2, True)
+    text = (folder / "kouros.service").read_text(encoding="utf-8")
+    assert "/srv/kouros" not in text
+    assert "/opt/kouros" not in text
+    (folder / "kouros.service").unlink()
+    (folder / "kouros.timer").unlink()
+    alone = kouros_process(("init", name, "--systemd"), tmp_path)
+    assert alone.returncode == 0, alone.stderr
+    assert text == (folder / "kouros.service").read_text(encoding="utf-8")
+    if ANALYZE is None:
+        pytest.skip("systemd-analyze is not on this machine: apt-get install systemd")
+    units = [str(folder / unit) for unit in ("kouros.service", "kouros.timer")]
+    checked = subprocess.run([ANALYZE, "verify", "--man=no", *units], capture_output=True, text=True, check=False)
+    assert checked.returncode == 0, checked.stderr
+    assert "kouros.service" not in checked.stderr
 
 
 def test_what_systemd_would_start(placed: Callable[[str], str], tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,10 @@ from pipeline.cache import CacheEntry
 from pipeline.errors import InputError
 from pipeline.kernels.lookup import POINTS, lookup_batch
 from pipeline.quantities import Array
-from pipeline.records import ChartAxis, Columns, Excitation, Model
+from pipeline.records import ChartAxis, Columns, Excitation, Model, notebook
+
+_DRAWN = 400
+"""Points of a drawn chart."""
 
 Run = Callable[[Mapping[str, Array]], Columns]
 """Parameters of a model, (n,) each -> its columns, with "error" and "note", under the motion of the chart."""
@@ -148,6 +152,49 @@ class ResponseChart:
         values, bounds = self.cells.values[..., at], self.cells.bounds[:, at]
         size = np.maximum(values.min(axis=1), SMALL * values.max())
         return float(np.divide(bounds, size, out=np.zeros_like(size), where=size > 0.0).max())
+
+    def _repr_html_(self) -> str:
+        rows = {
+            f"along {self.axis.name}": [f"{self.low:.4g} to {self.high:.4g}, {self.cells.nodes:,} analyses"],
+            "settled from": [f"{self.settled:.4g}"] if np.isfinite(self.settled) else ["nowhere"],
+            "tolerance": [f"{self.tolerance:.2g}"],
+            "interpolated within": [f"{name}: {self.worst(name):.2g}" for name in self.outputs],
+        }
+        return notebook.table("Response chart", rows)
+
+    def plot(self, output: str | None = None, axes: Any = None) -> Any:
+        """Draw an output along the axis, as far as interpolation may be wrong, with matplotlib.
+
+        Parameters
+        ----------
+        output : str, optional
+            One of `outputs`; None: the first.
+        axes : matplotlib Axes, optional
+            Where to draw; None: in a new figure.
+
+        Returns
+        -------
+        matplotlib Axes
+            In SI, over the logarithm of the axis' parameter.
+
+        Raises
+        ------
+        InputError
+            For an output that there is not.
+        KourosError
+            Where matplotlib is not installed.
+        """
+        name = self.outputs[0] if output is None else output
+        if name not in self.outputs:
+            raise InputError(f"the chart has no output {name!r}; it has {', '.join(self.outputs)}")
+        (at,) = notebook.axes_for(1, axes)
+        along = np.geomspace(self.low, self.high, _DRAWN)
+        looked = self.look(along)
+        value, bound = looked.columns[name], looked.bounds[name]
+        at.fill_between(along, value - bound, value + bound, color="0.8")
+        at.plot(along, value, color="black", linewidth=1.0)
+        at.set(xscale="log", xlabel=self.axis.name, ylabel=name)
+        return at
 
 
 def _all(value: float, like: Array) -> Array:
