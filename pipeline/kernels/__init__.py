@@ -107,7 +107,7 @@ def cache_folder() -> str:
     return str(_CONFIG.CACHE_DIR)
 
 
-class _Compilations(event.Listener):  # type: ignore[misc]
+class _Compilations(event.Listener):
     """Counts what is compiled: numba compiles one function at a time, whatever thread wants it."""
 
     def __init__(self) -> None:
@@ -122,7 +122,8 @@ class _Compilations(event.Listener):  # type: ignore[misc]
         tell_of_compiling(self._ended, self._begun)
 
 
-event.register("numba:compile", _Compilations())
+_register: Any = event.register  # numba has no types
+_register("numba:compile", _Compilations())
 
 # error_model="numpy": a division by zero gives inf, as in the arrays around it.  Nothing is reordered: the order of
 # operations decides overturning.
