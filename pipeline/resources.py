@@ -39,7 +39,7 @@ _SOURCES = frozenset({".py", ".csv", ".toml"})
 LIBRARIES = ("numba", "llvmlite", "numpy", "scipy", "obspy", "pywavelets", "openpyxl", "lxml")
 """What computes results, and reads what they are computed of, besides the package and Python."""
 
-PRINTERS = ("jinja2", "markupsafe", "pyarrow", "reportlab", "python-bidi", "arabic-reshaper", "matplotlib")
+PRINTERS = ("jinja2", "markupsafe", "babel", "pyarrow", "reportlab", "python-bidi", "arabic-reshaper", "matplotlib")
 """What draws pages and writes exports of results besides."""
 
 

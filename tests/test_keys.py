@@ -45,7 +45,10 @@ HARMLESS = {
 }
 """Libraries that are imported and that neither a number nor a page depends on, and why."""
 
-HOLDS = {"pyarrow": "holds the columns of the listing"}
+HOLDS = {
+    "matplotlib": "draws a motion in a notebook; pages that it draws on have it among `PRINTERS`",
+    "pyarrow": "holds the columns of the listing",
+}
 """The same of what computes only."""
 
 

@@ -260,12 +260,14 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
     """Return what an object is taken for among the chances of its classes; None where its record names no class.
 
     That is the likeliest class, but where nothing but a title speaks, and no depth says that it is a body: a title may
-    as well name what a picture shows, and what is taken for a picture is then not held to stand.
+    as well name what a picture shows, and what is taken for a picture is then not held to stand. Where the title names
+    nothing either, the two sizes of a picture must be there: one size, or none, is no sign of a picture.
     """
     if not chances:
         return None
     first = chances[0]
-    if is_alone(item) and item.title and SHAPES["panel"](item) and not read.outright:
+    faced = item.height_m is not None and item.width_m is not None
+    if is_alone(item) and item.title and SHAPES["panel"](item) and not read.outright and (faced or not read.silent):
         flat = next(one for one in chances if one.object_class in PICTURES)
         return flat if first.object_class in _standing() and flat.probability >= PICTURED else first
     return None if read.silent and first.probability < SURE else first

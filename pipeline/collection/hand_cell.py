@@ -44,11 +44,14 @@ class HandCell:
         The number with its unit.
     about : bool
         Whether it is said to be about so.
+    named : bool
+        Whether it names its unit.
     """
 
     value: float
     written: str
     about: bool = False
+    named: bool = False
 
 
 def of_hand(text: str, unit: str) -> HandCell:
@@ -121,7 +124,8 @@ def _measured(cell: str, plain: str, unit: str, about: bool) -> HandCell:
         raise InputError(f"{cell!r} is a range")
     if part.value is None or not part.value > 0.0:
         raise InputError(f"{cell!r} is zero")
-    return HandCell(part.value, f"{plain} {unit}" if bare else plain, about or "approximate" in part.qualifiers)
+    around = about or "approximate" in part.qualifiers
+    return HandCell(part.value, f"{plain} {unit}" if bare else plain, around, not bare)
 
 
 def _other(cell: str, plain: str, unit: str, about: bool) -> HandCell:
@@ -141,7 +145,7 @@ def _other(cell: str, plain: str, unit: str, about: bool) -> HandCell:
         raise InputError(f"{cell!r} is divided by zero") from None
     # Rounded once, where the number is exact: 30 % is 0.3.
     value = float(number * Fraction(str(units[named])))
-    return HandCell(value, plain if named else f"{plain} {unit}".removesuffix(" -"), about)
+    return HandCell(value, plain if named else f"{plain} {unit}".removesuffix(" -"), about, bool(named))
 
 
 def _parted(plain: str) -> str:

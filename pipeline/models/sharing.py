@@ -7,13 +7,13 @@ number of threads.
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from functools import lru_cache
 from itertools import pairwise
 
 from pipeline.kernels.lanes import LANES
 
-WORTH = 100_000
-"""Sets times samples below which handing a part on may cost more than it saves: about half a millisecond of work."""
+WORTH = 200_000
+"""Sets times samples below which handing a part on may cost more than it saves: about a millisecond of work, where
+threads cost a tenth of one. They live as long as the call, so that a process that is to be forked has none."""
 
 TURNS = 4
 """Parts for each thread: some sets take far longer than others."""
@@ -52,19 +52,8 @@ def shared(run: Callable[[slice], None], sets: int, samples: int, together: int 
         for part in waiting:
             run(part)
 
-    others = [_pool(_threads - 1).submit(take) for _ in range(min(_threads, parts) - 1)]
-    try:
+    with ThreadPoolExecutor(min(_threads, parts) - 1, thread_name_prefix="kernel") as pool:
+        others = [pool.submit(take) for _ in range(min(_threads, parts) - 1)]
         take()
-    finally:
-        for other in others:
-            other.result()
-
-
-@lru_cache(maxsize=1)
-def _pool(threads: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(threads, thread_name_prefix="kernel")
-
-
-if hasattr(os, "register_at_fork"):
-    # A process that was forked has none of the threads of the other.
-    os.register_at_fork(after_in_child=_pool.cache_clear)
+    for other in others:
+        other.result()

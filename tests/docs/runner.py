@@ -26,6 +26,7 @@ NOT_RUN = frozenset(
         "CI runs it",
         "it asks for a password",
         "it changes the machine's own services",
+        "it goes on until it is stopped",
         "it needs a Dask cluster",
         "it needs a PostgreSQL server",
         "it needs a copy of the source",

@@ -58,7 +58,8 @@ def test_mirrored_body_in_a_mirrored_motion_gives_the_same(seed: int, b1: float,
     other = respond(
         "rocking", times(motion, -1.0, 1.0), half_width=b2, half_width_other=b1, cg_height=0.6, gyration_radius=0.4
     )
-    pd.testing.assert_frame_equal(one, other, check_exact=False, rtol=1e-9)
+    edges = ["half_width", "half_width_other"]
+    pd.testing.assert_frame_equal(one.drop(columns=edges), other.drop(columns=edges), check_exact=False, rtol=1e-9)
 
 
 TWO_WAYS: list[tuple[str, dict[str, Any], float]] = [
