@@ -71,6 +71,8 @@ FORMS: Mapping[str, re.Pattern[str]] = {
 """How a title may be formed that stands alone, folded."""
 PICTURED = 0.03
 """Probability of a picture from which a title alone does not make a thing that stands: it leaves 1 of 500 pictures."""
+FACE = 0.5
+"""Depth over the smaller side of its face up to which a thing may be a picture in its frame (judgement)."""
 SURE = 0.5
 """Probability from which materials and measures alone say a class."""
 FLOOR = 0.02
@@ -261,12 +263,13 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
 
     That is the likeliest class, but where nothing but a title speaks, and no depth says that it is a body: a title may
     as well name what a picture shows, and what is taken for a picture is then not held to stand. Where the title names
-    nothing either, the two sizes of a picture must be there: one size, or none, is no sign of a picture.
+    nothing either, the face of a picture must be there, two sizes that are far larger than any depth: one size, or none,
+    is no sign of a picture, nor is a block of any size.
     """
     if not chances:
         return None
     first = chances[0]
-    faced = item.height_m is not None and item.width_m is not None
+    faced = item.height_m and item.width_m and (item.depth_m or 0.0) <= FACE * min(item.height_m, item.width_m)
     if is_alone(item) and item.title and SHAPES["panel"](item) and not read.outright and (faced or not read.silent):
         flat = next(one for one in chances if one.object_class in PICTURES)
         return flat if first.object_class in _standing() and flat.probability >= PICTURED else first

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pipeline.collection.inventory import Difference
     from pipeline.collection.reading import Reading
     from pipeline.night.importing import Imported, Proposed
+    from pipeline.tools.sheet_answers import SheetTaken
 
 
 @click.command("import")
@@ -232,6 +233,7 @@ def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> N
         found |= {"decisions": [codec.plain(Decision, one) for one in taken.decisions], "known_decisions": taken.known}
         found |= {"refused": [asdict(fault) for fault in taken.faults], "marked": taken.marked and str(taken.marked)}
         click.echo(json.dumps(found, indent=2))
+        _not_empty(taken, source)
         return
     listed("refused", [str(fault) for fault in taken.faults])
     listed("not in the inventory", taken.unknown)
@@ -248,6 +250,18 @@ def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> N
         click.echo(f"{cells} {'would be' if dry_run else 'marked, with what mends each,'} in {taken.marked}")
     if taken.rules:
         click.echo(f"{'would be added' if dry_run else 'added'} to {options.config}:\n\n{taken.rules}")
+    _not_empty(taken, source)
+
+
+def _not_empty(taken: "SheetTaken", source: str) -> None:
+    """Raise where all was refused: who calls this in a script must learn of it."""
+    if taken.empty:
+        from pipeline.collection.errors import CollectionError
+
+        raise CollectionError(
+            f"{Path(source).name}: no row fills in anything for an object of the inventory; "
+            "correct what is refused, and lay it over again"
+        )
 
 
 def _return(options: Options, version: int, dry_run: bool, wanted_json: bool) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from sqlalchemy import Engine
+from sqlalchemy import Engine, inspect
 
 from pipeline.collection.inventory import verify_inventory
 from pipeline.collection.inventory.records import LostRecordsError
@@ -54,6 +54,35 @@ class RowDamage(NamedTuple):
     table: str
     row: str
     remedy: str
+
+
+def verify_columns(engine: Engine) -> Iterator[RowDamage]:
+    """Yield every table whose columns are not those that were made.
+
+    Parameters
+    ----------
+    engine : Engine
+        Kouros's own database, of this version; it is only read.
+
+    Yields
+    ------
+    RowDamage
+    """
+    looked, dialect = inspect(engine), engine.dialect
+    there = set(looked.get_table_names())
+    for table in METADATA.tables.values():
+        made = {c.name: (c.type.compile(dialect), bool(c.nullable), c.primary_key) for c in table.columns}
+        keys = set(looked.get_pk_constraint(table.name)["constrained_columns"]) if table.name in there else set()
+        found = {
+            c["name"]: (c["type"].compile(dialect), bool(c["nullable"]), c["name"] in keys)
+            for c in (looked.get_columns(table.name) if table.name in there else ())
+        }
+        if dialect.name != "sqlite":
+            # Servers tell the same type by another name, and do not keep it as a text that may rot.
+            made, found = ({name: ("", *of[1:]) for name, of in side.items()} for side in (made, found))
+        if made != found:
+            names = sorted(name for name in made.keys() | found.keys() if made.get(name) != found.get(name))
+            yield RowDamage(table.name, f"its columns ({', '.join(names)[:200]})", _BACKUP)
 
 
 def tables() -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from pipeline.records import Progress
 from pipeline.report.files.manifest import verify_report
 from pipeline.settings import Settings
 from pipeline.store import migrate
-from pipeline.store.verifying import tables, verify_table
+from pipeline.store.verifying import tables, verify_columns, verify_table
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def _database(settings: Settings, progress: Progress) -> Iterator[Rot]:
     if url.get_backend_name() == "sqlite" and not Path(str(url.database)).is_file():
         return
     engine = open_for_reading(url)
-    looks = ["file", *tables()]
+    looks = ["file", "columns", *tables()]
     try:
         migrate.require_head(engine)
         for at, look in enumerate(looks):
@@ -84,7 +84,7 @@ def _database(settings: Settings, progress: Progress) -> Iterator[Rot]:
             if look == "file":
                 verify_file(engine, whole=True)
             else:
-                for one in verify_table(engine, look):
+                for one in verify_columns(engine) if look == "columns" else verify_table(engine, look):
                     yield Rot("database", f"{shown}, table {one.table}: {one.row}", "", one.remedy)
         progress.step("database", len(looks), len(looks))
     except KourosError as problem:

@@ -104,6 +104,9 @@ def _one(settings: Settings, config: Path, file: Path, *, dry_run: bool) -> Inbo
             raise
         return _refused(file, str(problem), dry_run=dry_run)
     words = _in_words(taken, dry_run=dry_run)
+    if taken.empty:
+        first = taken.faults[0]
+        return _refused(file, f"all of it, {counted(len(taken.faults), 'cell')}; {first}", dry_run=dry_run)
     if not dry_run:
         _moved(file, TAKEN)
     return _told(file.name, words, ok=True)

@@ -42,6 +42,8 @@ class SheetTaken:
         The cells that were refused.
     marked : Path or None
         The copy of the workbook in which they are marked; None where there is none.
+    empty : bool
+        Whether all that it says was refused.
     """
 
     reading: Reading | None
@@ -52,6 +54,7 @@ class SheetTaken:
     known: int = 0
     faults: tuple[CellFault, ...] = ()
     marked: Path | None = None
+    empty: bool = False
 
 
 def take_sheet(
@@ -112,7 +115,8 @@ def take_sheet(
         marked = (beside or path.parent) / f"{path.stem.removesuffix(MARKED)}{MARKED}.xlsx"
         if not dry_run:
             write_marked(path, faults, marked)
-    return SheetTaken(reading, changes, unknown, added, decided.made, decided.known, faults, marked)
+    nothing = bool(faults) and changes is None and not (rules.rules or decided.made or decided.known)
+    return SheetTaken(reading, changes, unknown, added, decided.made, decided.known, faults, marked, nothing)
 
 
 def _faults(reading: Reading, path: Path, unknown: set[str]) -> list[CellFault]:

@@ -184,7 +184,9 @@ def content(folder: Path) -> list[object] | None:
     try:
         with sqlite3.connect(f"file:{folder / DATABASE}?mode=ro", uri=True) as connection:
             connection.text_factory = bytes
-            told: list[object] = connection.execute("SELECT type, name, tbl_name, sql FROM sqlite_master").fetchall()
+            schema = connection.execute("SELECT type, name, tbl_name, sql FROM sqlite_master").fetchall()
+            # Nothing asks for the name of a constraint.
+            told: list[object] = [(*of, re.sub(rb"CONSTRAINT \S+", b"", sql or b"")) for *of, sql in schema]
             names = connection.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY 1").fetchall()
             for (name,) in names:
                 told.append(connection.execute(f"SELECT * FROM {name.decode()}").fetchall())  # noqa: S608

@@ -82,7 +82,7 @@ def test_all_objects_are_on_exactly_one_page(report: Path) -> None:
         e.text
         for name, page in _pages(report).items()
         if name != "index.html"
-        for e in page.iterfind(".//table[@class='list']/tbody/tr/th//bdi")
+        for e in page.iterfind(".//table[@class='list rows']/tbody/tr/th//bdi")
     )
     for assessment in builder.record().assessments:
         assert shown[assessment.scene.item.object_number] == 1

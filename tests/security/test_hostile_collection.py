@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 """What may reach no terminal: control characters but tabs and line ends, and marks of direction."""
 
-PAGE = re.compile(r"(index|motion|method|objects|reading-[0-9]+)\.html|[a-z0-9-]{1,60}-[0-9a-f]{8}\.html")
+PAGE = re.compile(r"(index|motion|method|objects|news|reading-[0-9]+)\.html|[a-z0-9-]{1,60}-[0-9a-f]{8}\.html")
 SHEET = re.compile(r"[a-z0-9-]{1,60}-[0-9a-f]{8}(-[0-9]+)?-sheet\.pdf")
 PART = re.compile(
     r"parts|parts/[a-z0-9-]{1,60}-[0-9a-f]{8}\.((findings|recommendations|objects)\.(csv|jsonl|parquet)|(keys|listed)\.arrow)"

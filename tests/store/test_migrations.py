@@ -25,6 +25,7 @@ from pipeline.store.codec import StoreError
 from pipeline.store.migrate import current, revisions, upgrade
 from pipeline.store.runs import load_run
 from pipeline.store.tables import IMPORT_BATCH, ITEM, METADATA
+from pipeline.store.verifying import verify_columns
 from tests.store.run_samples import assessment, finding, run, save_run
 
 UPGRADE = """
@@ -45,6 +46,7 @@ def _start(url: URL) -> subprocess.Popen[str]:
 def test_migrated_tables_equal_the_metadata(engine: Engine) -> None:
     with engine.connect() as connection:
         assert compare_metadata(MigrationContext.configure(connection), METADATA) == []
+    assert [*verify_columns(engine)] == []
     found = inspect(engine)
     assert set(found.get_table_names()) == {*METADATA.tables, "alembic_version"}
     for name, table in METADATA.tables.items():  # which alembic does not compare
