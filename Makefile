@@ -4,7 +4,7 @@ BIN := .venv/bin
 STAMP := .venv/.kouros-installed
 PEERS := .venv/.kouros-peers
 
-.PHONY: demo test lint docs bench soak audit airflow check-browser clean
+.PHONY: demo test lint docs catalogues bench soak audit airflow check-browser clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || { echo "python3 has no venv module: apt-get install python3-venv"; exit 1; }
@@ -38,6 +38,9 @@ docs: $(STAMP)  ## the documentation, in build/docs
 	$(BIN)/python -m docs.rooms
 	$(BIN)/python -m sphinx -W --keep-going -q -b html -d build/doctrees docs build/docs
 	@echo "build/docs/index.html"
+
+catalogues: $(STAMP)  ## the languages that travel with Kouros get new phrases, to be translated, and lose old ones
+	$(BIN)/python -m docs.catalogues
 
 bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks

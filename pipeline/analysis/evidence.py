@@ -261,9 +261,9 @@ def chances_of(item: Item, read: Readings) -> tuple[Chance, ...]:
 def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | None:
     """Return what an object is taken for among the chances of its classes; None where its record names no class.
 
-    That is the likeliest class, but where nothing but a title speaks, and no depth says that it is a body: a title may
+    That is the likeliest class, but where nothing but a title speaks, and no depth says that it is a body. A title may
     as well name what a picture shows, and what is taken for a picture is then not held to stand. Where the title names
-    nothing either, the face of a picture must be there, two sizes that are far larger than any depth: one size, or none,
+    nothing either, the face of a picture must be there, two sizes far larger than any depth: one size, or none,
     is no sign of a picture, nor is a block of any size.
     """
     if not chances:

@@ -70,6 +70,8 @@ def language(code: str, catalogues: Path | None) -> Language:
         files = find(DOMAIN, str(catalogues), [locale], all=True) if catalogues is not None else []
         contents = [Path(file).read_bytes() for file in files]
         read = [GNUTranslations(BytesIO(content)) for content in contents]
+        for content in contents:
+            _check(content, code)
     except (OSError, UnicodeDecodeError, ValueError) as error:
         raise ReportError(
             f"the catalogue of {code!r} in {catalogues} is damaged ({error}); compile it again"
@@ -91,7 +93,6 @@ def language(code: str, catalogues: Path | None) -> Language:
     phrases: NullTranslations = read[0] if read else NullTranslations()
     for more in read[1:]:
         phrases.add_fallback(more)
-    _check(phrases, code)
     reviewed = None if shipped is None else read[-1].info().get(SIGNED.lower(), "").strip()
     return Language(tag, phrases, sha256(b"".join(contents)).hexdigest() if contents else "", reviewed)
 
@@ -124,18 +125,23 @@ def _shipped(locale: str) -> bytes | None:
 _NAMES = re.compile(r"%\((\w+)\)s|\{(\w+)\}")
 
 
-def _check(phrases: NullTranslations, code: str) -> None:
-    # gettext offers no other way to look at a whole catalogue; NullTranslations has none.
-    catalogue: dict[str | tuple[str, int], str] = getattr(phrases, "_catalog", {})
-    for key, told in catalogue.items():
-        phrase = key if isinstance(key, str) else key[0]
-        unknown = {*_NAMES.findall(told)} - {*_NAMES.findall(phrase), ("count", "")} if phrase else set()
-        if unknown:
-            names = ", ".join(sorted(a or b for a, b in unknown))
-            raise ReportError(
-                f"the catalogue of {code!r} translates {phrase!r} by {told!r}, which asks for {names}: "
-                "use only the names of the phrase itself"
-            )
+def _check(content: bytes, code: str) -> None:
+    # By Babel: what gettext keeps of a catalogue has no plurals, which may name what the singular does not.
+    from babel.messages.mofile import read_mo
+
+    for message in read_mo(BytesIO(content)):
+        phrases, translations = (
+            [text] if isinstance(text, str) else list(text or ()) for text in (message.id, message.string)
+        )
+        known = {name for phrase in phrases for name in _NAMES.findall(phrase)} | {("count", "")}
+        for told in translations if any(phrases) else ():
+            unknown = {*_NAMES.findall(told)} - known
+            if unknown:
+                names = ", ".join(sorted(a or b for a, b in unknown))
+                raise ReportError(
+                    f"the catalogue of {code!r} translates {phrases[0]!r} by {told!r}, which asks for {names}: "
+                    "use only the names of the phrase itself"
+                )
 
 
 @contextmanager

@@ -319,10 +319,11 @@ class Report(_Part):
     language: str = Field(
         default="en",
         pattern=r"^[A-Za-z]{2,3}([-_][A-Za-z0-9]{2,8})*$",
-        description="the language of the pages; other than English, it needs a catalogue",
+        description="the language of the pages: en, el, es, it, ja, or one of which `catalogues` has a translation",
     )
     catalogues: str = Field(
-        default="", description="the folder of translations, which holds <language>/LC_MESSAGES/kouros.mo"
+        default="",
+        description="a folder with translations of your own, <language>/LC_MESSAGES/kouros.mo, which go before ours",
     )
     paper: Literal["A4", "Letter"] = Field(
         default="A4", description="of the sheets to walk a gallery with (PDF): A4 or Letter"

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from babel.dates import get_month_names
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract_from_dir
 from babel.messages.frontend import parse_mapping_cfg
@@ -61,6 +62,8 @@ LETTERS = str.maketrans(
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ", "абцдефгхийклмнопярстувщхузАБЦДЕФГХИЙКЛМНОПЯРСТУВЩХУЗ"
 )
 UNITS = {"cm", "g", "mm", "m", "in", "ft", "s", "Hz", "kg", "N", "MPa", "PGA", "PGV", "PGD", "SI", "UTC"}
+MONTHS = set(get_month_names("abbreviated", locale="it").values())
+"""Dates are Italian, by Babel and not by the catalogue."""
 FILES = re.compile(r"\w+\.(csv|jsonl|parquet|xlsx|html|toml)|kouros check --numerics")
 MARKED = ("bdi", "code", "eq")
 """Elements and classes that hold data: what the museum wrote, hashes, equations."""
@@ -81,18 +84,18 @@ NAMES = (
 """Names of fields, parameters and models in the builder's record: the pages look up the plain words of any name."""
 
 
-def phrases() -> Iterator[tuple[str, tuple[str, ...]]]:
-    """All phrases that a translation needs, as babel finds them by the file that the museum's translator uses."""
+def phrases(*further: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """All phrases that a translation needs, as babel finds them by the file that the museum's translator uses.
+
+    further : names of folders in which it looks besides those of the report
+    """
     root = Path(__file__).parents[2]
     with (root / "templates" / "babel.cfg").open(encoding="utf-8") as file:
         methods, options = parse_mapping_cfg(file)
-    for found in extract_from_dir(root, methods, options, directory_filter=_ours):
+    folders = {"templates", "pipeline", "report", "pages", "plots", "files", "tables", "models", *further}
+    for found in extract_from_dir(root, methods, options, directory_filter=lambda at: Path(at).name in folders):
         message = found[2]
         yield (message, ()) if isinstance(message, str) else (message[0], tuple(message[1:]))
-
-
-def _ours(folder: str) -> bool:
-    return Path(folder).name in ("templates", "pipeline", "report", "pages", "plots", "files", "tables", "models")
 
 
 def pseudo(phrase: str) -> str:
@@ -212,7 +215,7 @@ def pages(compiled: GNUTranslations, tmp_path_factory: pytest.TempPathFactory) -
 
 def _texts(page: etree._Element) -> Iterator[str]:
     """Yield each text that a reader or a screen reader meets, and the attributes that are read aloud."""
-    for element in page.iter():
+    for element in page.iter(etree.Element):
         tag = str(element.tag)
         inside = [element, *element.iterancestors()]
         hidden = any(
@@ -237,7 +240,7 @@ def test_no_english_is_left(pages: dict[str, etree._Element]) -> None:
         for text in _texts(page):
             bare = FILES.sub("", text)
             for word in re.findall(r"[A-Za-z][A-Za-z]+", bare):
-                if word not in UNITS:
+                if word not in UNITS | MONTHS:
                     left.setdefault(word, f"{name}: {text.strip()[:120]}")
     assert left == {}
 
@@ -276,7 +279,7 @@ def test_a_catalogue_is_read_from_its_folder(tmp_path: Path) -> None:
     assert said("freestanding") == "freestanding"
 
 
-@pytest.mark.parametrize("code", ["it", "xx-YY"])
+@pytest.mark.parametrize("code", ["ro", "xx-YY"])
 def test_a_language_without_a_catalogue_is_refused(tmp_path: Path, code: str) -> None:
     with pytest.raises(ReportError, match=r"kouros\.mo; compile the catalogue"):
         language(code, tmp_path)

@@ -159,8 +159,14 @@ def test_titles_in_other_scripts_are_shown_or_said_to_be_lacking(tmp_path: Path)
     told = "\n".join(words_of(drawn([WalkRow("3", "مرحبا", "")]), tmp_path))
     assert "\ufee3" in told
     assert "مرحبا" in normalize("NFKC", told)
+    # Chinese, Japanese and Korean are in the reader's own fonts, also where lines are cut.
+    rows = [WalkRow("日-77", "日本の壺" * 9, ""), WalkRow("4", "청자 항아리", ""), WalkRow("5", "铜鼎", "")]
+    told = "\n".join(words_of(drawn(rows), tmp_path))
+    assert "日-77" in "".join(told.split())
+    assert all(word in told for word in ("日本の壺", "항아리", "铜鼎"))
+    assert LACKING not in told
     # No font of the sheet has these: the number is there, and the reason.
-    told = "\n".join(words_of(drawn([WalkRow("日-77", "日本の壺", "")]), tmp_path))
+    told = "\n".join(words_of(drawn([WalkRow("\U00012000-77", "\U00012000", "")]), tmp_path))
     assert f"{LACKING}-77" in told
     assert "stands for letters that the fonts of this sheet lack" in told
 

@@ -42,12 +42,14 @@ class KeptPage:
     """A page of a report: the key of all that it depends on, what the index says of it, what it adds to the totals.
 
     images : files with pictures of its objects
+    turn   : what it has in its room for the pages before and behind it, see `turning`
     """
 
     key: str
     entry: Entry
     tally: Tally
     images: tuple[str, ...] = ()
+    turn: str = ""
 
     @property
     def files(self) -> tuple[str, ...]:

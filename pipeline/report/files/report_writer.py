@@ -9,6 +9,7 @@ import shutil
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, suppress
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
@@ -35,6 +36,7 @@ from pipeline.report.files.object_list import LISTED, OBJECTS, SHOWN, is_list_fi
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
 from pipeline.report.files.plan_files import PLAN_FILES, gathered_from, write_plan_table
 from pipeline.report.files.ranks import KEYS, ranks_of
+from pipeline.report.files.turning import turned, turns
 from pipeline.report.files.walk_sheet import sheet_file
 from pipeline.report.language import speaking
 from pipeline.report.pages.class_curves import FILE as CLASS_CURVES
@@ -208,6 +210,7 @@ class ReportWriter:
         ReportError
             Where two galleries' files would have one name.
         """
+        self._turn()
         self._export(head)
         plan = "" if terms is None else self._plan(head, terms)
         for name, text in [*self._shared(head, tally, changes, links, plan=plan), *(beside or {}).items()]:
@@ -235,6 +238,20 @@ class ReportWriter:
             (self._partial / name).parent.mkdir(exist_ok=True)
             _link_or_copy(self._previous.folder / name, self._partial / name)
             self._files[name] = self._previous.manifest.files[name]
+
+    def _turn(self) -> None:
+        """Say on each page which gallery is before it and which behind it, where that is not what it says already."""
+        with speaking(self.renderer.language):
+            links = turns([page.entry for page in self._pages])
+        for at, (page, told) in enumerate(zip(self._pages, links, strict=True)):
+            if page.turn == told:
+                continue
+            file = self._partial / page.entry.page.file
+            content = turned(file.read_bytes(), told)
+            # It may be the very file of the earlier report, which stays as it is.
+            file.unlink()
+            self._write(page.entry.page.file, content)
+            self._pages[at] = replace(page, turn=told)
 
     def _export(self, head: RunRecord) -> None:
         """Write the exports of the whole report, or take those of the earlier one if it has the same pages."""

@@ -1,21 +1,15 @@
 """The sheet to walk a gallery with as PDF: one line an object, with room for what was measured, by whom and when.
 
-It is set in DejaVu Sans, which comes with matplotlib: Latin, Greek, Cyrillic, Arabic and Hebrew, without a network.  A
-letter that it lacks is a box, and the sheet says so.
+A letter that the fonts lack is a box, and the sheet says so.
 """
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
-from importlib.util import find_spec
 from io import BytesIO
 from itertools import groupby
-from pathlib import Path
 from threading import Lock
-from typing import Any
 
-from pipeline.report.errors import ReportError
+from pipeline.report.files.sheet_fonts import BOLD, LACKING, SANS, draw_text, ready, shown_letters, width_of
 from pipeline.report.language import Language, _, ngettext
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.walking import WalkRow, WalkView
@@ -24,11 +18,6 @@ from pipeline.report.text import count, plain, short
 PAPERS = {"A4": (595.28, 841.89), "Letter": (612.0, 792.0)}
 """Sizes of paper, in points."""
 
-LACKING = "□"
-"""Stands for a letter that the fonts lack."""
-
-_SANS, _BOLD = "KourosSans", "KourosSans-Bold"
-_FILES = {_SANS: "DejaVuSans.ttf", _BOLD: "DejaVuSans-Bold.ttf"}
 _DRAWING = Lock()
 """Fonts of reportlab are for one document at a time."""
 
@@ -125,7 +114,7 @@ class _Sheet:
     ) -> None:
         from reportlab.pdfgen.canvas import Canvas
 
-        _fonts()
+        ready()
         self._view, self._head, self._size = view, head, size
         self._lacks = False
         self._images = {row.photo: images[row.photo] for row in (*view.act, *view.measure) if row.photo in images}
@@ -159,7 +148,9 @@ class _Sheet:
         room = self._size[1] - 2.0 * _MARGIN - _FOOT - 14.0
         # What the fonts lack is known once all is laid out: the note about it has its place in any case.
         pages = _paged(self._lines(), room - 11.0 * len(top) - 24.0, room)
-        self._pdf.setTitle(f"{plain(self._view.gallery) or _('No gallery recorded')}: {_('sheet to walk with')}")
+        # Not within an f-string: what is taken out for translators is not looked for there.
+        kind = _("sheet to walk with")
+        self._pdf.setTitle(f"{plain(self._view.gallery) or _('No gallery recorded')}: {kind}")
         self._pdf.setAuthor(plain(self._head.museum))
         self._pdf.setCreator("Kouros")
         for at, lines in enumerate(pages, 1):
@@ -187,7 +178,7 @@ class _Sheet:
                 if number
             )
             told += ". " + _("Tick what is done; write down what was measured, and who did it when.")
-        return self._wrapped(told, _SANS, self._width, 2)
+        return self._wrapped(told, SANS, self._width, 2)
 
     def _lines(self) -> list[_Line]:
         out = []
@@ -202,10 +193,10 @@ class _Sheet:
     def _line(self, row: WalkRow) -> _Line:
         texts = ("", row.number, row.title, row.what, row.numbers)
         cells = [
-            self._wrapped(text, _BOLD if at == 1 else _SANS, column.width - 2.0 * _PAD, column.lines)
+            self._wrapped(text, BOLD if at == 1 else SANS, column.width - 2.0 * _PAD, column.lines)
             for at, (text, column) in enumerate(zip(texts, self._columns, strict=False))
         ]
-        ask = self._wrapped(row.ask, _SANS, self._columns[5].width - 2.0 * _PAD, 2)
+        ask = self._wrapped(row.ask, SANS, self._columns[5].width - 2.0 * _PAD, 2)
         # What is to be measured stands above the room for the number.
         high = max(*map(len, cells), len(ask) + 1 if ask else 0)
         photo = row.photo if row.photo in self._images else ""
@@ -214,16 +205,15 @@ class _Sheet:
 
     def _fit(self, text: str) -> str:
         """Return a text with a box for each letter that the fonts lack."""
-        shown = _shown(text)
+        shown = shown_letters(text)
         self._lacks |= LACKING in shown and LACKING not in text
         return shown
 
     def _wrapped(self, text: str, font: str, width: float, most: int) -> tuple[str, ...]:
         """Cut a text into lines of a width in points, an ellipsis where there are more than so many."""
-        from reportlab.pdfbase.pdfmetrics import stringWidth
 
         def fits(piece: str) -> bool:
-            return bool(stringWidth(piece, font, _SIZE) <= width)
+            return width_of(piece, font, _SIZE) <= width
 
         lines, line = [], ""
         for word in self._fit(plain(text)[:_MOST]).split():
@@ -255,11 +245,11 @@ class _Sheet:
         y = self._size[1] - _MARGIN
         if at == 1:
             y -= 12.0
-            self._text(left, y, self._cut(self._name, _BOLD, 13.0, self._width), _BOLD, 13.0)
+            self._text(left, y, self._cut(self._name, BOLD, 13.0, self._width), BOLD, 13.0)
             y -= 3.0
             for line in told:
                 y -= 11.0
-                self._text(left, y, line, _SANS, 8.0)
+                self._text(left, y, line, SANS, 8.0)
             y -= 9.0
         if lines:
             y = self._headings(y)
@@ -272,7 +262,7 @@ class _Sheet:
     def _headings(self, y: float) -> float:
         x = _MARGIN
         for column in self._columns:
-            self._text(x + _PAD, y - 9.0, self._cut(column.title, _SANS, 6.5, column.width - _PAD), _SANS, 6.5, _GREY)
+            self._text(x + _PAD, y - 9.0, self._cut(column.title, SANS, 6.5, column.width - _PAD), SANS, 6.5, _GREY)
             x += column.width
         self._pdf.setLineWidth(0.9)
         self._pdf.line(_MARGIN, y - 13.0, _MARGIN + self._width, y - 13.0)
@@ -283,7 +273,7 @@ class _Sheet:
         if line.band:
             pdf.setFillGray(0.92)
             pdf.rect(_MARGIN, bottom, self._width, line.height, stroke=0, fill=1)
-            self._text(_MARGIN + _PAD, bottom + 5.0, line.band, _BOLD, _SIZE)
+            self._text(_MARGIN + _PAD, bottom + 5.0, line.band, BOLD, _SIZE)
             return
         pdf.rect(_MARGIN + _PAD, y - _PAD - 10.0, 9.0, 9.0)
         if line.photo:
@@ -292,14 +282,14 @@ class _Sheet:
         for at, column in enumerate(self._columns):
             if at < len(line.cells):
                 for row, text in enumerate(line.cells[at]):
-                    font = _BOLD if at == 1 else _SANS
+                    font = BOLD if at == 1 else SANS
                     self._text(x + _PAD, y - _PAD - 7.0 - row * _LEADING, text, font, _SIZE)
             else:
                 pdf.setStrokeGray(0.75)
                 pdf.line(x, y, x, bottom)
             if at == len(line.cells):
                 for row, text in enumerate(line.ask):
-                    self._text(x + _PAD, y - _PAD - 5.0 - row * 7.0, text, _SANS, 5.5, _GREY)
+                    self._text(x + _PAD, y - _PAD - 5.0 - row * 7.0, text, SANS, 5.5, _GREY)
             x += column.width
         pdf.line(_MARGIN, bottom, _MARGIN + self._width, bottom)
         pdf.setStrokeGray(0.0)
@@ -318,26 +308,23 @@ class _Sheet:
         right = _("page %(number)s of %(of)s") % {"number": at, "of": of}
         date = self._head.finished[:16].replace("T", " ")
         middle = _("results of %(date)s") % {"date": date} if date else ""
-        name = self._cut(self._name, _SANS, 7.0, 0.45 * self._width)
-        self._text(_MARGIN, y, name, _SANS, 7.0, _GREY)
-        self._pdf.drawCentredString(self._size[0] / 2.0 + 0.1 * self._width, y, _visual(_shown(plain(middle))))
-        self._pdf.drawRightString(_MARGIN + self._width, y, _visual(_shown(right)))
+        name = self._cut(self._name, SANS, 7.0, 0.45 * self._width)
+        self._text(_MARGIN, y, name, SANS, 7.0, _GREY)
+        draw_text(self._pdf, (self._size[0] / 2.0 + 0.1 * self._width, y), plain(middle), SANS, 7.0, share=0.5)
+        draw_text(self._pdf, (_MARGIN + self._width, y), right, SANS, 7.0, share=1.0)
         if self._lacks:
             told = _("%(box)s stands for letters that the fonts of this sheet lack; the page in the report has them.")
-            self._text(_MARGIN, y + 10.0, told % {"box": LACKING}, _SANS, 6.5, _GREY)
+            self._text(_MARGIN, y + 10.0, told % {"box": LACKING}, SANS, 6.5, _GREY)
 
     def _cut(self, text: str, font: str, size: float, width: float) -> str:
-        from reportlab.pdfbase.pdfmetrics import stringWidth
-
         shown = short(text, 120)
-        while len(shown) > 1 and stringWidth(shown, font, size) > width:
+        while len(shown) > 1 and width_of(shown, font, size) > width:
             shown = shown[:-2].rstrip("… ") + "…"
         return shown
 
     def _text(self, x: float, y: float, text: str, font: str, size: float, grey: float = 0.0) -> None:
         self._pdf.setFillGray(grey)
-        self._pdf.setFont(font, size)
-        self._pdf.drawString(x, y, _visual(_shown(text)))
+        draw_text(self._pdf, (x, y), text, font, size)
 
 
 def _paged(lines: Iterable[_Line], first: float, room: float) -> list[list[_Line]]:
@@ -370,48 +357,3 @@ def _kept_together(lines: Iterable[_Line]) -> Iterable[tuple[int, _Line]]:
     for line in lines:
         yield at, line
         at += not line.band
-
-
-@cache
-def _fonts() -> frozenset[int]:
-    """Register the fonts, and return the letters that both have."""
-    from reportlab.pdfbase.pdfmetrics import registerFont
-    from reportlab.pdfbase.ttfonts import TTFont
-
-    # Found and not imported: of matplotlib nothing but its fonts is wanted.
-    found = find_spec("matplotlib")
-    folder = Path(found.origin or "").parent / "mpl-data" / "fonts" / "ttf" if found else Path()
-    letters: frozenset[int] | None = None
-    for name, file in _FILES.items():
-        if not (folder / file).is_file():
-            raise ReportError(f"{folder / file} is missing, the font of the sheets: install matplotlib again")
-        font: Any = TTFont(name, str(folder / file), asciiReadable=False, shapable=False)
-        registerFont(font)
-        mine = frozenset(font.face.charToGlyph)
-        letters = mine if letters is None else letters & mine
-    return letters or frozenset()
-
-
-_ARABIC = re.compile("[\u0600-\u06ff\u0750-\u077f]")
-_TURNED = re.compile("[\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufeff]")
-
-
-def _shown(text: str) -> str:
-    """Return a text in letters that the fonts have, Arabic ones joined, a box for each of the others."""
-    if text.isascii():
-        return text
-    if _ARABIC.search(text):
-        from arabic_reshaper import reshape
-
-        text = reshape(text)
-    letters = _fonts()
-    return "".join(one if ord(one) in letters else LACKING for one in text)
-
-
-def _visual(line: str) -> str:
-    """Return a line in the order in which its letters stand from left to right."""
-    if not _TURNED.search(line):
-        return line
-    from bidi import get_display
-
-    return str(get_display(line))

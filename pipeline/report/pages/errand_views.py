@@ -29,7 +29,7 @@ DOUBTFUL = 60
 FEW = 4
 """Objects that a line of the first layer names."""
 
-_CLAUSE = re.compile(r"; |(?<=[a-z)])\. ")
+_CLAUSE = re.compile(r"; |(?<=[^\W\d_A-Z])\. |(?<=\))\. |(?<=。)")
 """Where the words of an advice go on with why it holds, and what to mind."""
 
 NAMED = 8

@@ -164,7 +164,8 @@ def _rests(number: int, under: str) -> str:
         "earthquake, over the range that these may have."
     )
     if not number:
-        return f"{words} {_('No model was run again.')}"
+        none = _("No model was run again.")
+        return f"{words} {none}"
     more = ngettext(
         "Of the {count} object of which most is lost all models were run again, under {under}.",
         "Of the {count} objects of which most is lost all models were run again, under {under}.",

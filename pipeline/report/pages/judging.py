@@ -110,7 +110,8 @@ def _state_chances(curves: Sequence[Fragility]) -> str:
         for state, chances in told
         if chances is not None
     ]
-    return f"{_('Within 50 years:')} {', '.join(known)}." if known else ""
+    within = _("Within 50 years:")
+    return f"{within} {', '.join(known)}." if known else ""
 
 
 def _view(f: Fragility, draw: str) -> FragilityView:

@@ -242,7 +242,8 @@ def _head(kind: NewsKind) -> str:
 def _text(kind: NewsKind, one: ObjectChange) -> str:
     now = one.after
     if kind is NewsKind.GONE:
-        return f" ({_('not on display any more') if one.recorded else _('no longer in the records')})"
+        gone = _("not on display any more") if one.recorded else _("no longer in the records")
+        return f" ({gone})"
     if kind is NewsKind.MOVED:
         return _moved(one)
     if kind is NewsKind.DECIDED or now is None:

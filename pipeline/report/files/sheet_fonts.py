@@ -1,0 +1,137 @@
+"""The letters of the sheets to walk with: which font has each, how wide a text is, and how it is drawn.
+
+Latin, Greek, Cyrillic, Arabic and Hebrew are set in DejaVu Sans, which comes with matplotlib and goes into the file.
+Chinese, Japanese and Korean are set in fonts that PDF only names (ISO 32000-1, 9.7.5.2): a reader shows its own font of
+that script, which a machine on which these languages are read has.  A letter that none has is a box.
+"""
+
+import re
+from collections.abc import Iterator
+from functools import cache, lru_cache
+from importlib.util import find_spec
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from pipeline.report.errors import ReportError
+
+LACKING = "□"
+"""Stands for a letter that the fonts lack."""
+
+SANS, BOLD = "KourosSans", "KourosSans-Bold"
+_FILES = {SANS: "DejaVuSans.ttf", BOLD: "DejaVuSans-Bold.ttf"}
+
+_NAMED = {
+    "HeiseiKakuGo-W5": "shift_jis",
+    "HYGothic-Medium": "euc_kr",
+    "STSong-Light": "gb2312",
+    "MSung-Light": "big5",
+}
+"""Fonts that are named only, and the letters that each has."""
+
+_ARABIC = re.compile("[\u0600-\u06ff\u0750-\u077f]")
+_TURNED = re.compile("[\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufeff]")
+
+
+@cache
+def ready() -> frozenset[int]:
+    """Register the fonts, and return the letters that those have which go into the file.
+
+    Raises
+    ------
+    ReportError
+        Where they are not there.
+    """
+    from reportlab.pdfbase.cidfonts import UnicodeCIDFont
+    from reportlab.pdfbase.pdfmetrics import registerFont
+    from reportlab.pdfbase.ttfonts import TTFont
+
+    # Found and not imported: of matplotlib nothing but its fonts is wanted.
+    found = find_spec("matplotlib")
+    folder = Path(found.origin or "").parent / "mpl-data" / "fonts" / "ttf" if found else Path()
+    letters: frozenset[int] | None = None
+    for name, file in _FILES.items():
+        if not (folder / file).is_file():
+            raise ReportError(f"{folder / file} is missing, the font of the sheets: install matplotlib again")
+        font: Any = TTFont(name, str(folder / file), asciiReadable=False, shapable=False)
+        registerFont(font)
+        mine = frozenset(font.face.charToGlyph)
+        letters = mine if letters is None else letters & mine
+    for name in _NAMED:
+        registerFont(UnicodeCIDFont(name))
+    return letters or frozenset()
+
+
+@lru_cache(maxsize=8192)
+def _named(letters: str) -> str:
+    """Return the first of the named fonts that has all of the letters; "" where none has."""
+    for name, held in _NAMED.items() if letters >= "\u1100" else ():
+        try:
+            letters.encode(held)
+        except UnicodeEncodeError:
+            continue
+        return name
+    return ""
+
+
+def shown_letters(text: str) -> str:
+    """Return a text in letters that the fonts have, Arabic ones joined, a box for each of the others."""
+    if text.isascii():
+        return text
+    if _ARABIC.search(text):
+        from arabic_reshaper import reshape
+
+        text = reshape(text)
+    letters = ready()
+    return "".join(one if ord(one) in letters or _named(one) else LACKING for one in text)
+
+
+def _runs(text: str, font: str) -> Iterator[tuple[str, str]]:
+    """Yield the pieces of a text, each with its font."""
+    if text.isascii():
+        yield text, font
+        return
+    letters = ready()
+    others = "".join(one for one in text if ord(one) not in letters)
+    # One font for the whole of a name, where one has it.
+    whole = _named(others)
+    for name, piece in groupby(text, key=lambda one: "" if ord(one) in letters else whole or _named(one)):
+        yield "".join(piece), name or font
+
+
+def width_of(text: str, font: str, size: float) -> float:
+    """Return how wide a text is, in points."""
+    from reportlab.pdfbase.pdfmetrics import stringWidth
+
+    return float(sum(stringWidth(piece, name, size) for piece, name in _runs(text, font)))
+
+
+def draw_text(pdf: Any, at: tuple[float, float], text: str, font: str, size: float, share: float = 0.0) -> None:
+    """Draw a line of text in the order in which its letters stand from left to right.
+
+    Parameters
+    ----------
+    pdf : Canvas
+        Of reportlab, on which it is drawn.
+    at : (float, float)
+        Where, in points.
+    text : str
+        As it is read.
+    font : {SANS, BOLD}
+        For what is in no script of its own font.
+    size : float
+        In points.
+    share : float
+        Which part of its width lies left of that point: 0.0, 0.5 for one that is centred, or 1.0.
+    """
+    line = shown_letters(text)
+    if _TURNED.search(line):
+        from bidi import get_display
+
+        line = str(get_display(line))
+    x, y = at
+    x -= share * width_of(line, font, size) if share else 0.0
+    for piece, name in _runs(line, font):
+        pdf.setFont(name, size)
+        pdf.drawString(x, y, piece)
+        x += width_of(piece, font, size)
