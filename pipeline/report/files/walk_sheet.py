@@ -22,8 +22,8 @@ _DRAWING = Lock()
 """Fonts of reportlab are for one document at a time."""
 
 _MARGIN, _SIZE, _LEADING, _PAD = 30.0, 7.5, 9.0, 3.0
-_LEAST = 21.0
-"""Height of a line in points, 7.4 mm: what people can write in."""
+_LEAST = 18.0
+"""Height of a line in points, 6.4 mm: what people can write in."""
 _PICTURE = 34.0
 """Side of the square of a picture in points, 12 mm."""
 _LINES = 40
@@ -132,10 +132,10 @@ class _Sheet:
         # Where something has a picture, the tick box has it beside.
         fixed = [
             _Column("", 16.0 + (_PICTURE + _PAD if self._images else 0.0), 0),
-            _Column(_("Object"), 82.0, _LINES),
+            _Column(_("Object"), 78.0, _LINES),
             _Column("", 0.0, 3),
-            _Column(_("What to do"), 96.0, 3),
-            _Column(_("Set to"), 92.0, 4),
+            _Column(_("What to do"), 92.0, 3),
+            _Column(_("Set to"), 104.0, 4),
             _Column(_("Measured"), 66.0, 2),
             _Column(_("Initials"), 36.0, 0),
             _Column(_("Date"), 42.0, 0),

@@ -172,7 +172,9 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
     named = dict.fromkeys(name for _text, name, _form, _how in Formatter().parse(advice.sentence) if name)
     told, write = [], by_hand(units)
     for name in named:
-        if name in advice.parameters and name not in _FOLLOWS:
+        # The page has the moment too; whoever buys a clamp asks what it must hold.
+        beside = name == "moment" and "force" in advice.parameters
+        if name in advice.parameters and name not in _FOLLOWS and not beside:
             text = write(name, advice.parameters[name], advice.units.get(name, ""))
             told.append(
                 _("%(times)s times its weight") % {"times": text} if name == "times" else f"{words(clean(name))} {text}"
