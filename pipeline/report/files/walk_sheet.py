@@ -10,7 +10,7 @@ from itertools import groupby
 from threading import Lock
 
 from pipeline.report.files.sheet_fonts import BOLD, LACKING, SANS, draw_text, ready, shown_letters, width_of
-from pipeline.report.language import Language, _, ngettext
+from pipeline.report.language import Language, _, moment, ngettext
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.walking import WalkRow, WalkView
 from pipeline.report.text import count, plain, short
@@ -306,7 +306,7 @@ class _Sheet:
     def _foot(self, at: int, of: int) -> None:
         y = _MARGIN
         right = _("page %(number)s of %(of)s") % {"number": at, "of": of}
-        date = self._head.finished[:16].replace("T", " ")
+        date = moment(self._head.finished)
         middle = _("results of %(date)s") % {"date": date} if date else ""
         name = self._cut(self._name, SANS, 7.0, 0.45 * self._width)
         self._text(_MARGIN, y, name, SANS, 7.0, _GREY)
