@@ -6,7 +6,7 @@ CLDR that Babel carries.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -120,6 +120,11 @@ def _shipped(locale: str) -> bytes | None:
                 write_mo(made, read_po(text, locale=name))
             return made.getvalue()
     return None
+
+
+def parted(parts: Iterable[str]) -> str:
+    """Return the parts of a sentence with what parts them in the language: in Greek ";" asks."""
+    return _("; ").join(parts)
 
 
 _NAMES = re.compile(r"%\((\w+)\)s|\{(\w+)\}")

@@ -7,7 +7,7 @@ from string import Formatter
 from pipeline.planning.errands import deciding
 from pipeline.records import Assessment, Recommendation
 from pipeline.report.by_hand import by_hand
-from pipeline.report.language import _, said
+from pipeline.report.language import _, parted, said
 from pipeline.report.pages.chances import name_of
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.views import ObjectView, PageView, State, SurveyView, TaskView
@@ -179,4 +179,4 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
             told.append(
                 _("%(times)s times its weight") % {"times": text} if name == "times" else f"{words(clean(name))} {text}"
             )
-    return "; ".join(told)
+    return parted(told)
