@@ -134,11 +134,11 @@ class _Sheet:
             _Column("", 16.0 + (_PICTURE + _PAD if self._images else 0.0), 0),
             _Column(_("Object"), 78.0, _LINES),
             _Column("", 0.0, 3),
-            _Column(_("What to do"), 92.0, 3),
-            _Column(_("Set to"), 104.0, 4),
-            _Column(_("Measured"), 66.0, 2),
+            _Column(_("What to do"), 112.0, 3),
+            _Column(_("Set to"), 98.0, 4),
+            _Column(_("Measured"), 62.0, 2),
             _Column(_("Initials"), 36.0, 0),
-            _Column(_("Date"), 42.0, 0),
+            _Column(_("Date"), 38.0, 0),
         ]
         fixed[2] = _Column(_("Title"), self._width - sum(one.width for one in fixed), 3)
         return tuple(fixed)
