@@ -1,7 +1,7 @@
 """Records added to a site: asked for, tried, written, shown, and set beside what the museum uses now."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,8 +38,8 @@ class AddWish:
     ----------
     answers : Answers
         What was said on the command line.
-    accept : str
-        Why refusals that are a matter of judgement are overruled; "" where they are not.
+    accept : mapping of str to str
+        Why refusals that are a matter of judgement are overruled, by their names; under "" that of all others.
     latitude, longitude : float or None
         Of a site that is new.
     guess : bool
@@ -49,7 +49,7 @@ class AddWish:
     """
 
     answers: Answers
-    accept: str = ""
+    accept: Mapping[str, str] = field(default_factory=dict)
     latitude: float | None = None
     longitude: float | None = None
     guess: bool = False
@@ -189,6 +189,9 @@ def add(
         raise _refused([(one.name, one.reason) for one in left])
     place = _place(wish, found.catalogues.site, folder)
     told = _told(place, new=before is None)
+    overruled = {name for one in made.placed for name in one.record.accept}
+    told += [f"nothing was refused for {name}: --accept {name} was not needed" for name in wish.accept
+             if name and name not in overruled]  # fmt: skip
     file = folder / MANIFEST
     result = Addition(file, before is None, made.placed, {}, made.already, left, found.passed_over, told,
                       made.withdrawn, None, None)  # fmt: skip
