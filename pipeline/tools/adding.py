@@ -184,7 +184,7 @@ def add(
     left = [*left, *found.unusable, *(Unusable(name, str(problem)) for name, problem in made.refused)]
     _clash(wish, made.level, made.already, known)
     if made.refused and not wish.guess:
-        raise _refused([(name, str(problem)) for name, problem in made.refused])
+        raise _refused([(name, str(problem)) for name, problem in made.refused], usable=len(made.placed))
     if not made.placed and not made.already:
         raise _refused([(one.name, one.reason) for one in left])
     place = _place(wish, found.catalogues.site, folder)
@@ -242,10 +242,11 @@ def _nothing_wrong(proposals: Sequence[RecordProposal], every: Sequence[Unusable
         raise _refused(told or [("files", "there is no record among them")])
 
 
-def _refused(told: Sequence[tuple[str, str]]) -> MotionError:
+def _refused(told: Sequence[tuple[str, str]], usable: int = 0) -> MotionError:
     lines = [f"{name}: {why}" for name, why in told[:20]]
     more = [f"and {len(told) - 20} more"] if len(told) > 20 else []
-    return MotionError("nothing was added: " + "\n  ".join([*lines, *more]))
+    hint = [f"{counted(usable, 'record')} can be used: --guess adds what can"] if usable else []
+    return MotionError("nothing was added: " + "\n  ".join([*lines, *more, *hint]))
 
 
 def _clash(wish: AddWish, level: str, already: Sequence[tuple[str, str]], known: Manifest | None) -> None:
