@@ -196,9 +196,8 @@ class _Making:
 
     def _handles(self, one: FileTrace) -> tuple[str, ...]:
         name, trace = one
-        return f"{self.found.paths[name]}#{trace.id}", str(self.found.paths[name]), Path(name).name, trace.id, (
-            trace.stats.channel
-        )  # fmt: skip
+        path, file = self.found.paths[name], Path(name).name
+        return f"{path}#{trace.id}", str(path), f"{file}#{trace.id}", file, trace.id, trace.stats.channel
 
     def _answer(self, said: Mapping[str, Any], *, plain: bool) -> Any:
         """The answer for the record: by one of its channels, or by nothing where that is meant."""
@@ -341,7 +340,7 @@ class _Making:
             named = [f"{name}{_word(one)}" for name, one in zip(called, lost, strict=True)]
             one_or_more = "How is" if len(lost) == 1 else "How are"
             text = f"{one_or_more} {', '.join(named)} oriented: degrees clockwise from north, or up, or down"
-            option = " ".join(f"--orientation {name}=..." for name in called)
+            option = " ".join(f"--orientation {self._own_handle(one)}=..." for one in lost)
             self._ask("orientation", text, option, [self._handles(one)[0] for one in lost])
             return {}
         flat = [(one, d) for one, d in zip(self.traces, known, strict=True) if isinstance(d, float)]
@@ -361,6 +360,14 @@ class _Making:
             return str(code)
         names = [name for name, _ in self.traces]
         return Path(one[0]).name if names.count(one[0]) == 1 else str(one[1].id)
+
+    def _own_handle(self, one: FileTrace) -> str:
+        """What no other channel of all the files is called, so that an answer is for none of another record."""
+        called = self._handle(one)
+        every = [trace for _, traces in self.found.traces for trace in traces]
+        if called != one[1].stats.channel or [trace.stats.channel for trace in every].count(called) == 1:
+            return called
+        return f"{Path(one[0]).name}#{one[1].id}"
 
     def _key(self, one: FileTrace) -> str:
         """What a manifest calls it, so that no other channel of the files is meant."""

@@ -9,6 +9,7 @@ import pytest
 from obspy.core.inventory import Channel, Inventory, Network, Response, Site, Station
 
 from pipeline.motions import MotionError, read_motion
+from pipeline.motions.inspection import inspect
 from pipeline.motions.joining import check_together
 
 from .conftest import tone
@@ -86,6 +87,24 @@ def test_the_borehole_does_not_join_the_surface(tmp_path, write_manifest):
 
 def test_two_earthquakes_of_one_station_are_refused(tmp_path, write_manifest):
     refused(kiknet(tmp_path, write_manifest, origin="2018/01/24 19:49:55"), "a.EW2", "a.UD", "earthquake of 2018-01-24")
+
+
+def test_a_magnitude_that_the_header_brought_raises_no_corner(tmp_path, write_manifest):
+    """By its magnitude of 3 a small source would take the corner up, and the motion be weaker; a person may say so."""
+    files = {"a.EW": ("E-W", "x", 90), "a.NS": ("N-S", "y", 0), "a.UD": ("U-D", "z", "up")}
+    for name, (direction, _, _) in files.items():
+        knet(tmp_path / name, direction)
+        head = (tmp_path / name).read_text()
+        (tmp_path / name).write_text(head.replace("Mag.              6.2", "Mag.              3.0"))
+    components = {name: {"axis": axis, "orientation": way} for name, (_, axis, way) in files.items()}
+    corners = {}
+    for said in (None, 3.0, 3.1):
+        event = None if said is None else {"magnitude": said}
+        made = {"files": list(files), "components": components, "units": None, "processed": False, "event": event}
+        (looked,) = inspect(write_manifest(**made))
+        corners[said] = looked.corners[0]
+    assert corners[3.0] == corners[None]
+    assert corners[3.1] > corners[None]
 
 
 def told_otherwise(header, **changes):
