@@ -210,7 +210,7 @@ def _lines(done: "Addition", *, guess: bool, dry: bool) -> list[str]:
     rows = []
     for one in done.placed:
         found = done.measures.get(one.name)
-        peaks = [f"{found['pga'] / G:.3f}", f"{100.0 * found['pgv']:.1f}"] if found else ["-", "-"]
+        peaks = [f"{found['pga'] / G:.3g}", f"{100.0 * found['pgv']:.3g}"] if found else ["-", "-"]
         event = one.record.event
         size = "-" if event is None or event.magnitude is None else f"{event.magnitude:g}"
         far = "-" if one.record.distance_km is None else f"{one.record.distance_km:g}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import re
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -68,6 +69,7 @@ def test_what_is_accepted_is_in_the_manifest_with_its_reason(
     text = (tmp_path / "mine" / "manifest.toml").read_text(encoding="utf-8")
     assert tomllib.loads(text)["level"][0]["record"][0]["accept"] == written
     assert all(f"overruled {check}: {why}" in out for check, why in written.items())
+    assert re.search(r"design +- +- +0\.0001[56]\d* ", out), "weak shaking is no zero in the table"
 
 
 def test_one_check_that_is_accepted_overrules_no_other(tmp_path: Path) -> None:
@@ -122,6 +124,17 @@ def test_the_answer_for_one_of_several_records_is_for_no_other(tmp_path: Path) -
     assert not left
     found = [{c.orientation for c in one.record.components.values()} for one in proposals if one.record is not None]
     assert found == [{30.0, 90.0, "up"}, {120.0, 90.0, "up"}]
+
+
+def test_a_station_that_is_a_number_is_called_by_its_name(tmp_path: Path) -> None:
+    """The code that BHRC's file has is I1.5526, which tells nobody where it stood."""
+    (tmp_path / "a.V1").write_bytes(national.bhrc())
+    (one,), left = propose(gather([tmp_path / "a.V1"]), Answers())
+    assert not left
+    assert one.record is not None
+    assert one.record.station is not None
+    assert one.record.station.name
+    assert one.name.startswith(one.record.station.name)
 
 
 def test_a_single_channel_says_which_it_is(tmp_path: Path) -> None:
