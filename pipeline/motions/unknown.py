@@ -47,9 +47,9 @@ def unknown(file: Path) -> MotionError:
 
 
 def _in_utf16(start: bytes) -> bool:
-    """Whether every other byte is zero and the rest are those of a text."""
+    """Whether every other byte is zero and the rest are those of a text, with a line's end."""
     halves = start[0 : len(start) & ~1 : 2], start[1::2]
     return any(
-        len(text) > 10 and not other.strip(b"\0") and all(byte >= 32 or byte in b"\t\r\n" for byte in text)
+        b"\n" in text and not other.strip(b"\0") and all(byte >= 32 or byte in b"\t\r\n" for byte in text)
         for text, other in (halves, halves[::-1])
     )
