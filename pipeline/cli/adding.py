@@ -28,6 +28,28 @@ def _keyed(words: Sequence[str], option: str) -> dict[str, str]:
     return made
 
 
+def _accepted(words: Sequence[str]) -> dict[str, str]:
+    """REASON for every check that refuses, or CHECK=REASON for one; a reason may hold "=" itself behind a blank."""
+    from pipeline.motions.errors import JUDGEMENTS
+    from pipeline.operations.workspace import near
+
+    made = {}
+    for word in words:
+        check, equals, reason = word.partition("=")
+        name = check.strip().replace("-", "_")
+        if not equals or " " in check.strip():
+            name, reason = "", word
+        elif name not in JUDGEMENTS:
+            wrong = f"{check!r} is no check that may be overruled{near(name, JUDGEMENTS)}"
+            raise click.BadParameter(
+                f"{wrong}; write REASON, or CHECK=REASON for one of {', '.join(JUDGEMENTS)}", param_hint="--accept"
+            )
+        if not reason.strip().isprintable() or not reason.strip() or len(reason) > 500:
+            raise click.BadParameter("give the reason, at most 500 printable characters", param_hint="--accept")
+        made[name] = reason.strip()
+    return made
+
+
 def _unit(value: str) -> str:
     from pipeline.motions.reading import UNITS
 
@@ -71,7 +93,14 @@ def _direction(value: str) -> float | str:
 @click.option("--licence", default="", help="Under which licence it may be used.")
 @click.option("--latitude", type=click.FloatRange(-90.0, 90.0), help="Of a site that is new, degrees north.")
 @click.option("--longitude", type=click.FloatRange(-180.0, 180.0), help="Of a site that is new, degrees east.")
-@click.option("--accept", metavar="REASON", default="", help="Overrule what is refused as a matter of judgement.")
+@click.option(
+    "--accept",
+    "accepted",
+    multiple=True,
+    metavar="[CHECK=]REASON",
+    help="Overrule what is refused as a matter of judgement, all of it or the check that is named; the manifest keeps "
+    "the reason.  What is corrupt stays refused.",
+)
 @click.option("--guess", is_flag=True, help="Add what can be used, and say of the rest why not: for whole folders.")
 @click.option("--page", type=click.Path(dir_okay=False, path_type=Path), help="Page of before and after to write.")
 @click.option("--compare/--no-compare", default=True, help="Say what changes for the museum, as `motions compare`.")
@@ -117,7 +146,8 @@ def add(
     for key in ("name", "level", "source", "licence"):
         if not said[key].isprintable() or len(said[key]) > 500:
             raise click.BadParameter("at most 500 printable characters", param_hint=f"--{key}")
-    wish = AddWish(answers, said["accept"].strip(), said["latitude"], said["longitude"], said["guess"], said["compare"])
+    accepted = _accepted(said["accepted"])
+    wish = AddWish(answers, accepted, said["latitude"], said["longitude"], said["guess"], said["compare"])
     with options.console() as console:
         asking = sys.stdin.isatty() and not as_json
         done = job(
@@ -180,7 +210,7 @@ def _lines(done: "Addition", *, guess: bool, dry: bool) -> list[str]:
     rows = []
     for one in done.placed:
         found = done.measures.get(one.name)
-        peaks = [f"{found['pga'] / G:.3f}", f"{100.0 * found['pgv']:.1f}"] if found else ["-", "-"]
+        peaks = [f"{found['pga'] / G:.3g}", f"{100.0 * found['pgv']:.3g}"] if found else ["-", "-"]
         event = one.record.event
         size = "-" if event is None or event.magnitude is None else f"{event.magnitude:g}"
         far = "-" if one.record.distance_km is None else f"{one.record.distance_km:g}"

@@ -81,7 +81,7 @@ def own_record(files: Sequence[Path], latitude: float, longitude: float) -> OwnR
         )
     with TemporaryDirectory(prefix="kouros-event-") as name:
         folder = Path(name) / "site"
-        made = plan(folder, "event", proposals, "", None, None)
+        made = plan(folder, "event", proposals, {}, None, None)
         if made.refused:
             raise MotionError("; ".join(f"{who}: {problem}" for who, problem in made.refused))
         commit(made, changed(made, StationTable(name="museum", latitude=latitude, longitude=longitude)))

@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, get_args
 
 from pipeline.errors import InputError
 
 Judgement = Literal["clipping", "cut_off", "size", "drift", "orientation", "mixed", "several"]
 """Refusals that a person may overrule; what is corrupt is refused whatever is accepted."""
+
+JUDGEMENTS: tuple[Judgement, ...] = get_args(Judgement)
 
 
 class MotionError(InputError):
@@ -80,6 +82,28 @@ def judged(
         With its `judgement`, where it is not accepted.
     """
     if judgement not in accept:
-        way = f'or look at it and overrule by accept.{judgement} = "REASON" in the manifest\'s record'
-        raise refusal(file, place, wrong, f"{remedy}, {way}", judgement)
+        raise refusal(file, place, wrong, f"{remedy}, {_by_manifest(judgement)}", judgement)
     steps.append(f"{place} {wrong}; accepted: {accept[judgement]}")
+
+
+def unwritten(problem: MotionError) -> MotionError:
+    """Return the refusal of a record that no manifest names yet: what overrules it is an option, not a manifest's line.
+
+    Parameters
+    ----------
+    problem : MotionError
+        As it is raised for a manifest's record.
+
+    Returns
+    -------
+    MotionError
+    """
+    judgement = problem.judgement
+    if not judgement:
+        return problem
+    way = f'or look at it and overrule by `kouros motions add --accept {judgement}="REASON"`'
+    return MotionError(str(problem).replace(_by_manifest(judgement), way), judgement)
+
+
+def _by_manifest(judgement: Judgement) -> str:
+    return f'or look at it and overrule by accept.{judgement} = "REASON" in the manifest\'s record'

@@ -21,6 +21,14 @@ of it (judgement; the components of one film record of the 1970s differ by 1 % a
 NEAR = 0.001
 """Degrees, about 100 m, that the headers of one station's components may differ by rounding."""
 
+ONE_EVENT = 60.0
+"""s, how far apart the times of one earthquake may be: its solutions differ by seconds, and some are told to the minute
+(judgement)."""
+
+ONE_PLACE = 50.0
+"""km, how far apart the epicentres of one earthquake may be: those of a network's first and of its last solution, or of
+two agencies, may differ by tens of km (judgement)."""
+
 Row = tuple[Path, Any, str]
 """A component's file, its trace, and what the manifest calls it."""
 
@@ -118,8 +126,15 @@ def check_together(rows: Mapping[str, Row], inventory: Any, accept: Mapping[Judg
     known = _facts(trace, inventory)
     for axis in others:
         other, its, its_key = rows[axis]
-        for what, value in _facts(its, inventory).items():
-            if what in known and not _same(what, known[what], value):
+        said = _facts(its, inventory)
+        one_event = _one_earthquake(known, said)
+        if one_event and (
+            told := [w for w in _OF_EVENTS if w in known and w in said and not _same(w, known[w], said[w])]
+        ):
+            differ = ", ".join(f"{what} {_told(known[what])} and {_told(said[what])}" for what in told)
+            steps.append(f"{file.name} and {other.name} tell one earthquake in two ways: {differ}")
+        for what, value in said.items():
+            if what in known and not (one_event and what in _OF_EVENTS) and not _same(what, known[what], value):
                 wrong = (
                     f"{file.name} ({key}) and {other.name} ({its_key}) do not belong together: {what} "
                     f"{_told(known[what])} and {_told(value)}"
@@ -185,6 +200,27 @@ def _facts(trace: Any, inventory: Any) -> dict[str, Any]:
     if inventory is not None:
         facts |= _of_station(trace, inventory)
     return {what: value for what, value in facts.items() if value is not None and not _is_blank(value)}
+
+
+_TIME, _PLACE = "earthquake of", ("epicentre's latitude", "epicentre's longitude")
+_OF_EVENTS = (_TIME, *_PLACE, "earthquake", "magnitude")
+"""Facts that are of the earthquake."""
+
+
+def _one_earthquake(known: Mapping[str, Any], said: Mapping[str, Any]) -> bool:
+    """Whether two headers tell one earthquake by its time, and its place where both know it; whatever they call it."""
+    if not all(_TIME in facts for facts in (known, said)):
+        return False
+    if abs(known[_TIME] - said[_TIME]) > ONE_EVENT:
+        return False
+    if not all(part in facts for part in _PLACE for facts in (known, said)):
+        return True
+    from obspy.geodetics import gps2dist_azimuth
+
+    places = [float(facts[part]) for facts in (known, said) for part in _PLACE]
+    if not all(abs(value) <= most for value, most in zip(places, (90.0, 360.0) * 2, strict=True)):
+        return False
+    return float(gps2dist_azimuth(*places)[0]) <= 1000.0 * ONE_PLACE
 
 
 _KOUROS = {

@@ -35,6 +35,9 @@ def complete(file: Path, stream: Any) -> None:
     for trace in stream:
         if trace.stats._format != "KNET":
             continue
+        if "knet" not in trace.stats:
+            wrong = "has no header of K-NET that can be read: its lines end by carriage returns alone, or are missing"
+            raise refusal(file, "file", wrong, "fetch it again")
         said, factor = trace.stats.knet, float(trace.stats.calib)
         announced, found = round(said.duration * trace.stats.sampling_rate), trace.stats.npts
         if found != announced:
@@ -42,7 +45,8 @@ def complete(file: Path, stream: Any) -> None:
             raise refusal(file, "file", wrong, "fetch it again")
         size = float(np.abs(trace.data - np.mean(trace.data)).max()) * factor
         peak = _GAL * float(said.accmax)
-        if abs(size - peak) > PEAK_TOLERANCE * peak + 0.001 * _GAL:
+        # Written so that what is no number is refused as well.
+        if not abs(size - peak) <= PEAK_TOLERANCE * peak + 0.001 * _GAL:
             wrong = f"announces a peak of {peak:.4g} m/s2, and its samples have {size:.4g} m/s2"
             raise refusal(file, "file", wrong, "it is damaged: fetch it again")
         below = trace.stats.channel.endswith("1")

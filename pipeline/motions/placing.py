@@ -15,7 +15,7 @@ from typing import Any
 import tomlkit
 from pydantic import ValidationError
 
-from pipeline.motions.errors import Judgement, MotionError, refusal
+from pipeline.motions.errors import Judgement, MotionError, refusal, unwritten
 from pipeline.motions.manifest import MANIFEST, LevelTable, Manifest, load_manifest
 from pipeline.motions.processing import EAST
 from pipeline.motions.proposing import RecordProposal
@@ -114,7 +114,7 @@ def plan(
     folder: Path,
     level: str,
     proposals: Sequence[RecordProposal],
-    reason: str,
+    reasons: Mapping[str, str],
     before: str | None,
     known: Manifest | None,
 ) -> PlacingPlan:
@@ -127,8 +127,8 @@ def plan(
     level : str
         Of shaking.
     proposals : sequence of RecordProposal
-    reason : str
-        Why refusals that are a matter of judgement are overruled; "" where they are not.
+    reasons : mapping of str to str
+        Why refusals that are a matter of judgement are overruled, by their names; under "" that of all others.
     before, known : str or None, Manifest or None
         As of `opened`.
 
@@ -171,9 +171,9 @@ def plan(
                 copies[known_as] = path
             final[local] = known_as
         try:
-            accepted = _tried(folder, record, proposal.files, table, reason, known)
+            accepted = _tried(record, proposal.files, table, reasons, known)
         except MotionError as problem:
-            made.refused.append((proposal.name, problem))
+            made.refused.append((proposal.name, unwritten(problem)))
             continue
         named = _renamed(record.model_copy(update={"name": name, "accept": accepted}), final)
         told = [
@@ -240,22 +240,23 @@ def _renamed(record: Record, names: Mapping[str, str]) -> Record:
 
 
 def _tried(
-    folder: Path,
     record: Record,
     files: Mapping[str, Path],
     table: LevelTable | None,
-    reason: str,
+    reasons: Mapping[str, str],
     known: Manifest | None,
 ) -> dict[Judgement, str]:
-    """Process a record from where its files are now, and return the refusals that the reason overrules."""
+    """Process a record from where its files are now, and return the refusals that are overruled, with the reasons."""
     now = _renamed(record, {local: str(path.absolute()) for local, path in files.items()})
     azimuth = EAST if known is None else known.site.x_azimuth
     accepted: dict[Judgement, str] = {}
     while True:
         try:
             granted = now.model_copy(update={"accept": accepted})
-            prepare(folder / MANIFEST, "record", granted, None if table is None else table.target, azimuth)
+            # What is wrong is in the record's files: there is no manifest yet that could be looked into.
+            prepare(Path(now.files[0]), "", granted, None if table is None else table.target, azimuth)
         except MotionError as problem:
+            reason = reasons.get(problem.judgement) or reasons.get("")
             if not reason or not problem.judgement or problem.judgement in accepted:
                 raise
             accepted[problem.judgement] = reason

@@ -86,7 +86,7 @@ def doubt_recorded(data: Array) -> Implausibility | None:
     return Implausibility(
         "size",
         f"its {which} component peaks at {peak / G:.3g} g, outside of {low:g} to {high:g} g",
-        "this looks like a wrong unit or sensitivity, or too small a shaking: mend units or response in the manifest",
+        "this looks like a wrong unit or sensitivity, or too small a shaking: mend the unit or the response",
     )
 
 
@@ -113,15 +113,17 @@ def doubt_motion(motion: Motion, *, velocity: Array | None, processed: bool) -> 
     v = v if velocity is None else velocity
     pgv = float(np.abs(v[:2]).max())
     if processed and (said := _residual(motion, v, u)):
-        remedy = "this looks like a raw record: give processed = false in the manifest, or the agency's processed files"
+        remedy = (
+            "this looks like a raw record: give processed = false in the manifest (--raw), or the agency's processed "
+            "files"
+        )
         return Implausibility("drift", said, remedy)
     if not PGV[0] <= pgv <= PGV[1]:
         low, high = (100.0 * bound for bound in PGV)
         return Implausibility(
             "size",
             f"its PGV is {100.0 * pgv:.3g} cm/s, outside of {low:g} to {high:g} cm/s",
-            "this looks like a wrong unit, a drift or too small a shaking: mend units, response or highpass_hz in the "
-            "manifest",
+            "this looks like a wrong unit, a drift or too small a shaking: mend the unit, the response or highpass_hz",
         )
     ratio, period = pgv / measures(motion)["pga"], mean_period(motion)
     low, high = VELOCITY_TO_ACCELERATION
@@ -131,8 +133,8 @@ def doubt_motion(motion: Motion, *, velocity: Array | None, processed: bool) -> 
         "size",
         f"its PGV over its PGA is {ratio:.3g} s and its mean period {period:.3g} s, which no acceleration of an "
         f"earthquake has",
-        "this looks like velocity or displacement called acceleration, or a wrong time step: mend units or response in "
-        "the manifest",
+        "this looks like velocity or displacement called acceleration, or a wrong time step: mend the unit "
+        "or the response",
     )
 
 

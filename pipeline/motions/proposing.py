@@ -196,9 +196,8 @@ class _Making:
 
     def _handles(self, one: FileTrace) -> tuple[str, ...]:
         name, trace = one
-        return f"{self.found.paths[name]}#{trace.id}", str(self.found.paths[name]), Path(name).name, trace.id, (
-            trace.stats.channel
-        )  # fmt: skip
+        path, file = self.found.paths[name], Path(name).name
+        return f"{path}#{trace.id}", str(path), f"{file}#{trace.id}", file, trace.id, trace.stats.channel
 
     def _answer(self, said: Mapping[str, Any], *, plain: bool) -> Any:
         """The answer for the record: by one of its channels, or by nothing where that is meant."""
@@ -217,7 +216,10 @@ class _Making:
             return self._which()
         if len(self.traces) < 2:
             named = ", ".join(path.name for path in self.local.values())
-            raise MotionError(f"{named} holds one channel; give the files of the other components as well")
+            (channel,) = self._by_trace()
+            known = "" if channel.orientation is None else f", {_degrees(channel.orientation)}"
+            wrong = f"{named} holds one channel ({channel.code}{known})"
+            raise MotionError(f"{wrong}; give the files of the other components of {_label(self.of)} as well")
         response = self._response()
         processed = self._processed(response)
         components = self._components()
@@ -301,7 +303,8 @@ class _Making:
         if keyed or any(self._silent(trace) for _, trace in self.traces):
             return keyed or self.answers.units.get("")
         plain, own = self.answers.units.get(""), own_unit(self.first.stats)
-        self.told.append(f"{own[0]}, by its files")
+        sensitivity = " with their sensitivity" if own[0] == "counts" else ""
+        self.told.append(f"{own[0]}{sensitivity}, by its files")
         if plain and UNITS[plain] != own[1]:
             self.told.append(f"its files say {own[0]}, so that --unit {plain} was not needed")
         return None
@@ -334,8 +337,10 @@ class _Making:
         lost = [one for one, direction in zip(self.traces, known, strict=True) if direction is None]
         if lost:
             called = [self._handle(one) for one in lost]
-            text = f"How are {', '.join(called)} oriented: degrees clockwise from north, or up, or down"
-            option = " ".join(f"--orientation {name}=..." for name in called)
+            named = [f"{name}{_word(one)}" for name, one in zip(called, lost, strict=True)]
+            one_or_more = "How is" if len(lost) == 1 else "How are"
+            text = f"{one_or_more} {', '.join(named)} oriented: degrees clockwise from north, or up, or down"
+            option = " ".join(f"--orientation {self._own_handle(one)}=..." for one in lost)
             self._ask("orientation", text, option, [self._handles(one)[0] for one in lost])
             return {}
         flat = [(one, d) for one, d in zip(self.traces, known, strict=True) if isinstance(d, float)]
@@ -355,6 +360,14 @@ class _Making:
             return str(code)
         names = [name for name, _ in self.traces]
         return Path(one[0]).name if names.count(one[0]) == 1 else str(one[1].id)
+
+    def _own_handle(self, one: FileTrace) -> str:
+        """What no other channel of all the files is called, so that an answer is for none of another record."""
+        called = self._handle(one)
+        every = [trace for _, traces in self.found.traces for trace in traces]
+        if called != one[1].stats.channel or [trace.stats.channel for trace in every].count(called) == 1:
+            return called
+        return f"{Path(one[0]).name}#{one[1].id}"
 
     def _key(self, one: FileTrace) -> str:
         """What a manifest calls it, so that no other channel of the files is meant."""
@@ -414,8 +427,9 @@ class _Making:
         if self.answers.name:
             return self.answers.name
         code = "" if station is None else station.code or ""
-        # A number alone tells nobody where it is.
-        where = code if "." in code or station is None else station.name or code
+        # A number tells nobody where it is, with or without its network.
+        tells = "." in code and not code.rpartition(".")[2].isdigit()
+        where = code if tells or station is None else station.name or code
         if self.search is not None:
             return one_line(f"{self.search.event}, {self.search.station} (RSN {self.search.number})")
         if event is not None and event.name:
@@ -448,6 +462,12 @@ _LICENCE = "its files do not say: ask before you pass it on"
 
 def _degrees(direction: float | str) -> str:
     return f"{direction:g} degrees" if isinstance(direction, float) else direction
+
+
+def _word(one: FileTrace) -> str:
+    """What a header says of a direction in a word that tells none, such as L; "" where it says nothing."""
+    said = one[1].stats.get("kouros", {}).get("orientation")
+    return f" (its header says {one_line(said)!r})" if isinstance(said, str) and one_line(said) else ""
 
 
 def _from_peer(file: Path) -> bool:

@@ -395,7 +395,7 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
     file : Path
         The manifest.
     key : str
-        The record's place in it, for messages.
+        The record's place in it, for messages; "" where there is none yet.
     record : Record
         What is read, and what is to be done to it.
     target : TargetTable or None
@@ -418,7 +418,8 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
     steps: list[str] = []
 
     def ask(judgement: Judgement, wrong: str, remedy: str) -> None:
-        judged(record.accept, judgement, file, f"{key}, record {record.name!r}", wrong, remedy, steps)
+        place = ", ".join(filter(None, (key, f"record {record.name!r}")))
+        judged(record.accept, judgement, file, place, wrong, remedy, steps)
 
     try:
         recording = read_record(file.parent, record)
@@ -426,13 +427,13 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
         span, _ = remove_baseline(_span(recording), recording.dt)
         if doubt := doubt_recorded(span):
             ask(doubt.judgement, doubt.wrong, doubt.remedy)
-        if incomplete := cut_off(span, recording.dt, ("x", "y", "z")):
+        if incomplete := cut_off(span, recording.dt, recording.channels):
             ask("cut_off", incomplete, "use the whole record, or widen window_s")
         done = process(recording, record, target, x_azimuth)
     except MotionError:
         raise
     except ValueError as error:
-        raise refusal(file, key, str(error), "mend that key of the manifest") from error
+        raise refusal(file, key or "record", str(error), "mend that key of the manifest") from error
     logger.info(
         "%s, %s, record %r: read and processed in %.2f s, %d samples of %g s",
         file, key, record.name, perf_counter() - since, done.motion.acceleration.shape[-1], done.motion.dt,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from pathlib import Path
 
 from pipeline.motions.errors import MotionError, refusal
@@ -28,8 +29,10 @@ def unknown(file: Path) -> MotionError:
     packed = next((name for magic, name in _PACKED.items() if start.startswith(magic)), None)
     if packed:
         return refusal(file, "file", f"is packed ({packed})", "unpack it: what is read is what its hash is of")
-    if not start.strip():
+    if not start.strip(b" \t\r\n\0\x1a"):
         return refusal(file, "file", "is empty", "fetch it again")
+    if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or _in_utf16(start):
+        return refusal(file, "file", "is text in UTF-16", "save it as plain text (ASCII or UTF-8)")
     if b"\0" in start:
         first = "it is no text"
     else:
@@ -41,3 +44,12 @@ def unknown(file: Path) -> MotionError:
         "a table of numbers becomes a record by: kouros motions convert FILE --columns time,ns,ew,ud --unit gal --out"
     )
     return refusal(file, "file", wrong, f"{remedy} FOLDER (and --dt 0.01 where no column is the time)")
+
+
+def _in_utf16(start: bytes) -> bool:
+    """Whether every other byte is zero and the rest are those of a text, with a line's end."""
+    halves = start[0 : len(start) & ~1 : 2], start[1::2]
+    return any(
+        b"\n" in text and not other.strip(b"\0") and all(byte >= 32 or byte in b"\t\r\n" for byte in text)
+        for text, other in (halves, halves[::-1])
+    )

@@ -1,7 +1,7 @@
 """Records added to a site: asked for, tried, written, shown, and set beside what the museum uses now."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,8 +38,8 @@ class AddWish:
     ----------
     answers : Answers
         What was said on the command line.
-    accept : str
-        Why refusals that are a matter of judgement are overruled; "" where they are not.
+    accept : mapping of str to str
+        Why refusals that are a matter of judgement are overruled, by their names; under "" that of all others.
     latitude, longitude : float or None
         Of a site that is new.
     guess : bool
@@ -49,7 +49,7 @@ class AddWish:
     """
 
     answers: Answers
-    accept: str = ""
+    accept: Mapping[str, str] = field(default_factory=dict)
     latitude: float | None = None
     longitude: float | None = None
     guess: bool = False
@@ -184,11 +184,14 @@ def add(
     left = [*left, *found.unusable, *(Unusable(name, str(problem)) for name, problem in made.refused)]
     _clash(wish, made.level, made.already, known)
     if made.refused and not wish.guess:
-        raise _refused([(name, str(problem)) for name, problem in made.refused])
+        raise _refused([(name, str(problem)) for name, problem in made.refused], usable=len(made.placed))
     if not made.placed and not made.already:
         raise _refused([(one.name, one.reason) for one in left])
     place = _place(wish, found.catalogues.site, folder)
     told = _told(place, new=before is None)
+    overruled = {name for one in made.placed for name in one.record.accept}
+    told += [f"nothing was refused for {name}: --accept {name} was not needed" for name in wish.accept
+             if name and name not in overruled]  # fmt: skip
     file = folder / MANIFEST
     result = Addition(file, before is None, made.placed, {}, made.already, left, found.passed_over, told,
                       made.withdrawn, None, None)  # fmt: skip
@@ -239,10 +242,11 @@ def _nothing_wrong(proposals: Sequence[RecordProposal], every: Sequence[Unusable
         raise _refused(told or [("files", "there is no record among them")])
 
 
-def _refused(told: Sequence[tuple[str, str]]) -> MotionError:
+def _refused(told: Sequence[tuple[str, str]], usable: int = 0) -> MotionError:
     lines = [f"{name}: {why}" for name, why in told[:20]]
     more = [f"and {len(told) - 20} more"] if len(told) > 20 else []
-    return MotionError("nothing was added: " + "\n  ".join([*lines, *more]))
+    hint = [f"{counted(usable, 'record')} can be used: --guess adds what can"] if usable else []
+    return MotionError("nothing was added: " + "\n  ".join([*lines, *more, *hint]))
 
 
 def _clash(wish: AddWish, level: str, already: Sequence[tuple[str, str]], known: Manifest | None) -> None:

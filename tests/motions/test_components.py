@@ -1,6 +1,7 @@
 """Components of a record are of one earthquake at one instrument, oriented as their station says."""
 
 import hashlib
+from pathlib import Path
 
 import numpy as np
 import obspy
@@ -8,6 +9,8 @@ import pytest
 from obspy.core.inventory import Channel, Inventory, Network, Response, Site, Station
 
 from pipeline.motions import MotionError, read_motion
+from pipeline.motions.inspection import inspect
+from pipeline.motions.joining import check_together
 
 from .conftest import tone
 
@@ -83,7 +86,57 @@ def test_the_borehole_does_not_join_the_surface(tmp_path, write_manifest):
 
 
 def test_two_earthquakes_of_one_station_are_refused(tmp_path, write_manifest):
-    refused(kiknet(tmp_path, write_manifest, origin="2018/01/24 19:50:10"), "a.EW2", "a.UD", "earthquake of 2018-01-24")
+    refused(kiknet(tmp_path, write_manifest, origin="2018/01/24 19:49:55"), "a.EW2", "a.UD", "earthquake of 2018-01-24")
+
+
+def test_a_magnitude_that_the_header_brought_raises_no_corner(tmp_path, write_manifest):
+    """By its magnitude of 3 a small source would take the corner up, and the motion be weaker; a person may say so."""
+    files = {"a.EW": ("E-W", "x", 90), "a.NS": ("N-S", "y", 0), "a.UD": ("U-D", "z", "up")}
+    for name, (direction, _, _) in files.items():
+        knet(tmp_path / name, direction)
+        head = (tmp_path / name).read_text()
+        (tmp_path / name).write_text(head.replace("Mag.              6.2", "Mag.              3.0"))
+    components = {name: {"axis": axis, "orientation": way} for name, (_, axis, way) in files.items()}
+    corners = {}
+    for said in (None, 3.0, 3.1):
+        event = None if said is None else {"magnitude": said}
+        made = {"files": list(files), "components": components, "units": None, "processed": False, "event": event}
+        (looked,) = inspect(write_manifest(**made))
+        corners[said] = looked.corners[0]
+    assert corners[3.0] == corners[None]
+    assert corners[3.1] > corners[None]
+
+
+def told_otherwise(header, **changes):
+    said = {"event_time": START, "event_latitude": 41.0, "event_longitude": 142.4, "event_name": "Off Aomori"} | changes
+    header.stats.kouros = obspy.core.AttribDict({"units": "m/s2"} | said)
+    return (None, header, header.stats.channel)
+
+
+@pytest.mark.parametrize(
+    ("changes", "differs"),
+    [
+        # Two solutions of one earthquake, 30 s and, by the length of a degree of 111 km, 11 km apart.
+        ({"event_time": START + 30.0, "event_latitude": 41.1, "event_name": "AOMORI-KEN TOHO-OKI"}, ""),
+        ({"event_time": START + 59.0, "event_name": ""}, ""),
+        ({"event_time": START + 61.0}, "earthquake of"),
+        # 1 degree of latitude: another earthquake of the same minute.
+        ({"event_latitude": 42.0}, "epicentre's latitude"),
+        # Without a time on both sides, the names are all there is.
+        ({"event_time": None, "event_name": "Off Iwate"}, "earthquake 'Off Aomori'"),
+    ],
+)
+def test_earthquakes_are_compared_by_time_and_place_and_not_by_their_names(changes, differs):
+    made = [obspy.Trace(tone(), {"network": "XX", "station": "S", "channel": c}) for c in ("HNE", "HNN")]
+    rows = {"x": told_otherwise(made[0]), "y": told_otherwise(made[1], **changes)}
+    rows = {axis: (Path(f"{axis}.asc"), trace, key) for axis, (_, trace, key) in rows.items()}
+    steps = []
+    if differs:
+        with pytest.raises(MotionError, match=differs):
+            check_together(rows, None, {}, steps)
+        return
+    check_together(rows, None, {}, steps)
+    assert any("tell one earthquake in two ways" in step for step in steps), "by other names, or other seconds"
 
 
 def at2(path, title, data):

@@ -187,7 +187,7 @@ def _about(text: list[str], reals: Array, absent: float) -> dict[str, Any]:
                                event_depth_km=real(11), distance_km=real(16))  # fmt: skip
     said |= header_facts.magnitude({"W": real(12), "S": real(13), "L": real(14)})
     station = next((found[1] for line in text if (found := _PLACE.search(line))), "")
-    return header_facts.about(**said, station_name=station)
+    return header_facts.about(**said, event_name=header_facts.earthquake_name(text), station_name=station)
 
 
 def _agree(lines: Lines, index: int, names: dict[str, Any]) -> str:

@@ -42,8 +42,6 @@ _TIME = re.compile(
     r"(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,3})?)\s*(UTC|GMT|P[SD]T)",
     re.IGNORECASE,
 )
-_EARTHQUAKE = re.compile(r"^([A-Z]{3})[A-Z]*\.? (\d{1,2}), (\d{4})\s+-?(\d\d)(\d\d) GMT")
-_MONTHS = ("JAN", "FEB", "MAR", "APR", "MAY", "JUN", "JUL", "AUG", "SEP", "OCT", "NOV", "DEC")
 _ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}
 _TEXT_LINES = {1: 13, 2: 25}
 _FARTHEST = 60
@@ -251,12 +249,8 @@ def started(lines: Lines, top: int, text: list[str]) -> tuple[Any, str]:
             # What a recorder says whose clock was never set.
             unset = (year, month, day, hour, minute) == (1980, 1, 1, 0, 0)
             return (None, "unknown") if unset else (when + 3600 * _ZONES[found[7].upper()], "record")
-    for offset, line in enumerate(text):
-        if (found := _EARTHQUAKE.search(line)) and found[1] in _MONTHS:
-            month, *rest = _MONTHS.index(found[1]) + 1, *(float(found[i]) for i in (2, 3, 4, 5))
-            day, year, hour, minute = rest
-            return trace_headers.start_time(lines, top + offset, year, month, day, hour, minute, 0.0), "earthquake"
-    return None, "unknown"
+    _, when = header_facts.earthquake_minute(text)
+    return (None, "unknown") if when is None else (when, "earthquake")
 
 
 def _peak_pattern(volume: int) -> re.Pattern[str]:

@@ -113,6 +113,7 @@ def _about(lines: Lines, top: int, integers: Array, reals: Array) -> dict[str, A
         said.pop("magnitude_type", None)
     parts = [float(value) for value in integers[:6]]
     said["event_time"] = header_facts.moment(*parts[:5], parts[5] / 10.0)
+    said["event_name"] = header_facts.place_name(lines.text(top + 6))
     return header_facts.about(**said, station_name=header_facts.place_name(lines.text(top + 2)))
 
 

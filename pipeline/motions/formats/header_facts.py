@@ -24,6 +24,21 @@ _ORIGIN = re.compile(
     r"(UTC|GMT|P[SD]T)",
     re.IGNORECASE,
 )
+_MONTHS = ("JAN", "FEB", "MAR", "APR", "MAY", "JUN", "JUL", "AUG", "SEP", "OCT", "NOV", "DEC")
+_MONTH = rf"(?P<month>{'|'.join(_MONTHS)})[A-Z]{{0,6}}\.?"
+_CLOCK = r"\s+-?\s*(?P<hour>\d\d):?(?P<minute>\d\d)\s*(?P<zone>UTC|GMT|P[SD]T)\b"
+_MINUTES = (
+    re.compile(rf"\b(?P<day>\d{{1,2}}) {_MONTH} (?P<year>\d{{4}}){_CLOCK}", re.IGNORECASE),
+    re.compile(rf"\b{_MONTH} (?P<day>\d{{1,2}}), (?P<year>\d{{4}}){_CLOCK}", re.IGNORECASE),
+)
+_RECORD = re.compile(r"^\s*(?:record|rcrd) of\b", re.IGNORECASE)
+_SEXAGESIMAL = r"(\d{1,3}) (\d\d) (\d\d)\s?([NS]), (\d{1,3}) (\d\d) (\d\d)\s?([EW])"
+_EPICENTRE = re.compile(rf"^epicenter\s+-?\s*{_SEXAGESIMAL}", re.IGNORECASE)
+_STATION = re.compile(rf"^station\s.{{0,16}}?\s{_SEXAGESIMAL}", re.IGNORECASE)
+_EARTHQUAKE = re.compile(
+    r"^\s*(?:(?:record|rcrd) of\s+)?([A-Za-z][A-Za-z .,'-]{2,50}?)\s+(earthquake)(?=\s*$|\s{2}|\s+of\b)", re.IGNORECASE
+)
+_STATE = re.compile(r"(?<=, )[A-Z][a-z]\b")
 _ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}
 _KINDS = ("W", "S", "L", "B", "D")
 _SIDES = {"N": 1.0, "S": -1.0, "E": 1.0, "W": -1.0, "": 1.0}
@@ -92,9 +107,38 @@ def of_text(text: Sequence[str]) -> dict[str, Any]:
             said["latitude"], said["longitude"] = _point(found)
         if "event_time" not in said and (found := _ORIGIN.search(line)):
             said["event_time"] = _time(found)
+        for prefix, pattern in (("event_", _EPICENTRE), ("", _STATION)):
+            if f"{prefix}latitude" not in said and (found := pattern.search(line)):
+                said[f"{prefix}latitude"], said[f"{prefix}longitude"] = _from_seconds(found)
         if "magnitude" not in said:
             said |= magnitude({kind.upper(): float(size) for kind, size in _MAGNITUDE.findall(line)})
+    if said.get("event_time") is None:
+        said["event_time"] = earthquake_minute(text)[1]
     return about(**said)
+
+
+def earthquake_minute(text: Sequence[str]) -> tuple[int, Any]:
+    """Return the time of an earthquake as headers tell it that know it to the minute, such as "15 OCT 1979 - 2317 UTC".
+
+    Parameters
+    ----------
+    text : sequence of str
+        The header's lines; one that only tells when the record began is passed over.
+
+    Returns
+    -------
+    int, obspy.UTCDateTime or None
+        The line, from 0, and the time; the number of lines and None where none says it.
+    """
+    for index, line in enumerate(text):
+        if _RECORD.search(line) and "earthquake" not in line.lower():
+            continue
+        found = next((found for pattern in _MINUTES if (found := pattern.search(line))), None)
+        if found:
+            month = _MONTHS.index(found["month"].upper()) + 1
+            parts = [int(found["year"]), month, *(int(found[part]) for part in ("day", "hour", "minute"))]
+            return index, moment(*parts, 0.0, zone=-_ZONES[found["zone"].upper()])
+    return len(text), None
 
 
 def magnitude(sizes: dict[str, float | None]) -> dict[str, Any]:
@@ -135,9 +179,9 @@ def place_name(line: str) -> str:
 def earthquake_name(lines: Iterable[str]) -> str:
     """Return the first line that names an earthquake, such as "COALINGA EARTHQUAKE"; "" for none."""
     for line in lines:
-        name = re.split(r"\s{2,}", line.strip())[0]
-        if re.fullmatch(r"[A-Za-z][A-Za-z .,'-]{2,50} earthquake", name, re.IGNORECASE):
-            return name.title() if name.isupper() else name
+        if found := _EARTHQUAKE.search(line):
+            name = " ".join(f"{found[1]} {found[2]}".split())
+            return _STATE.sub(lambda state: state[0].upper(), name.title()) if name.isupper() else name
     return ""
 
 
@@ -172,6 +216,13 @@ def moment(*parts: float, zone: int = 0) -> Any:
 
 def _point(found: re.Match[str]) -> tuple[float, float]:
     return turned(float(found[1]), found[2]), turned(float(found[3]), found[4])
+
+
+def _from_seconds(found: re.Match[str]) -> tuple[float, float]:
+    """Degrees north and east of degrees, minutes and seconds."""
+    parts = found.groups()
+    north, east = (float(p[0]) + float(p[1]) / 60.0 + float(p[2]) / 3600.0 for p in (parts[:3], parts[4:7]))
+    return turned(north, parts[3]), turned(east, parts[7])
 
 
 def _time(found: re.Match[str]) -> Any:

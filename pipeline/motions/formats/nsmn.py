@@ -90,6 +90,14 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     return traces
 
 
+def _turkish(name: str) -> str:
+    """The name of a place in Turkey's eight-bit code, "" where it is not."""
+    try:
+        return name if name.isascii() else name.encode("latin-1").decode("iso8859-9")
+    except UnicodeError:
+        return ""
+
+
 def _about(keys: Keys) -> dict[str, Any]:
     said: dict[str, Any] = {}
     for key, name in (("", "STATION COORDINATES"), ("event_", "EPICENTER COORDINATES")):
@@ -104,7 +112,7 @@ def _about(keys: Keys) -> dict[str, Any]:
         **(header_facts.magnitude({size[2].upper(): float(size[1])}) if size else {}),
         event_depth_km=header_facts.number(keys, "EARTHQUAKE DEPTH"),
         event_time=None if when is None else header_facts.moment(*map(float, when.groups())),
-        station_name=keys.get("PLACE", (0, ""))[1] if keys.get("PLACE", (0, ""))[1].isascii() else "",
+        station_name=_turkish(keys.get("PLACE", (0, ""))[1]),
     )
 
 

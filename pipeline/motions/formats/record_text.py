@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -153,7 +154,12 @@ def head(source: Source) -> str:
     # A text may end in NUL bytes or end-of-file marks; in front of anything else they mean that it is no text.
     if not isinstance(raw, bytes) or b"\0" in raw.rstrip(b"\0\x1a\r\n "):
         return ""
-    return raw.decode("latin-1")
+    return _plain(raw).decode("latin-1")
+
+
+def _plain(raw: bytes) -> bytes:
+    """A text without the mark that editors put before UTF-8, and with one kind of line ends."""
+    return raw.removeprefix(codecs.BOM_UTF8).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
 
 def open_lines(source: Source) -> Lines:
@@ -186,7 +192,7 @@ def open_lines(source: Source) -> Lines:
         raw = source.read(MAX_BYTES + 1)
     if len(raw) > MAX_BYTES:
         raise FormatError(f"{file}: line 1: is larger than {MAX_BYTES} bytes; split it into one file a channel")
-    raw = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    raw = _plain(raw)
     count = raw.count(b"\n") + 1
     if count > MAX_LINES:
         raise FormatError(f"{file}: line {MAX_LINES}: has {count} lines, more than a record; split it by channels")

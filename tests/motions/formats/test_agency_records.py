@@ -132,7 +132,7 @@ def test_stale_records_and_nul_bytes(agency_file):
 TIMES = {
     "CE89146.V1": ("2012-02-13T21:06:45", "record"),
     "ce36456p_CE36456.V2": ("1983-05-02T23:42:48.2", "record"),  # 16:42:48.2 PDT
-    "CHAN14.V2": ("1970-01-01", "unknown"),
+    "CHAN14.V2": ("1979-10-15T23:17", "earthquake"),
     "0111a.smc": (EVENT_1989, "earthquake"),
     "20180212_211557_WPWS_20.V2A": ("2018-02-12T21:15:17", "record"),
     "NP1795-n.305.v0c": ("2019-05-05T06:47:39.93249", "record"),
