@@ -1,6 +1,7 @@
 """A survey that was filled in: measurements, house rules and decisions are taken up, and refused cells come back."""
 
 import logging
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +23,10 @@ from pipeline.tools.survey import LENGTH_UNITS, read_sheet
 
 MARKED = "-refused"
 """What the name of the copy with refused cells has behind that of the workbook, or of a text of them."""
+
+
+_LONGEST = 200
+"""Bytes of a file's name at most: file systems allow 255, and something is put before it and behind it."""
 
 
 @dataclass(frozen=True)
@@ -119,9 +124,14 @@ def take_sheet(
     return SheetTaken(reading, changes, unknown, added, decided.made, decided.known, faults, marked, nothing)
 
 
+def bounded(stem: str) -> str:
+    """Return the stem of a file's name so far as a name may have more before it and behind it."""
+    return os.fsdecode(os.fsencode(stem)[:_LONGEST])
+
+
 def _marked(path: Path, faults: Sequence[CellFault], folder: Path, *, dry_run: bool) -> Path:
     """Write the copy of a workbook in which the refused cells are marked, or a text of them where there can be none."""
-    name = f"{path.stem.removesuffix(MARKED)}{MARKED}"
+    name = f"{bounded(path.stem.removesuffix(MARKED))}{MARKED}"
     target, listed = folder / f"{name}.xlsx", folder / f"{name}.txt"
     if path.suffix.lower() != ".xlsx":
         target = listed
