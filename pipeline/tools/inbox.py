@@ -147,8 +147,6 @@ def _in_words(taken: SheetTaken, *, dry_run: bool) -> str:
 
 def _told(name: str, words: str, *, ok: bool) -> InboxFile:
     # In a line each, whatever a file is called.
-    name, words = (
-        "".join(c if c.isprintable() else "?" for c in text) for text in (name, words)
-    )
+    name, words = ("".join(c if c.isprintable() else "?" for c in text) for text in (name, words))
     note("survey.inbox", level=logging.INFO if ok else logging.WARNING, file=name, message=words)
     return InboxFile(name, words, ok)

@@ -1,11 +1,10 @@
-"""The sheet of decisions and the folder that a night reads: what is taken, what comes back, and that no file ends a night."""
+"""The sheet of decisions, and the folder that a night reads: what is taken, what comes back; no file ends a night."""
 
 from __future__ import annotations
 
 import os
 import time
-from dataclasses import replace
-from datetime import UTC, date, datetime, timedelta
+from datetime import date, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +19,18 @@ from pipeline.store.decisions import read_decisions
 from pipeline.tools.inbox import InboxFile, take_inbox
 from tests.museum import edit, kouros
 
-from .surveyed import OBJECTS, SHEET, copied, fill, inventory, museum_with_survey, write_rows
+from .surveyed import OBJECTS, copied, fill, inventory, museum_with_survey, write_rows
 
 pytestmark = pytest.mark.slow_file
 
 TODAY = datetime.now().date()
-GOOD = {"object_number": OBJECTS[0], "decision": "accept", "why": "The case is rebuilt", "who": "Ann", "date": "2025-05-01"}
+GOOD = {
+    "object_number": OBJECTS[0],
+    "decision": "accept",
+    "why": "The case is rebuilt",
+    "who": "Ann",
+    "date": "2025-05-01",
+}
 
 REFUSED: list[tuple[dict[str, Any], str, str]] = [
     ({"object_number": "9999"}, "object_number", "no object"),
@@ -137,7 +142,9 @@ def aged(file: Path, seconds: float = 3600.0) -> Path:
 
 def test_files_are_taken_the_oldest_first_and_put_away(museum: Path, inbox: Path) -> None:
     fill(museum / "s.xlsx", {(OBJECTS[0], "height [cm]"): "30"}, into=inbox / "b.xlsx")
-    fill(museum / "s.xlsx", {(OBJECTS[0], "height [cm]"): "40", (OBJECTS[1], "height [cm]"): "x"}, into=inbox / "a.xlsx")
+    fill(
+        museum / "s.xlsx", {(OBJECTS[0], "height [cm]"): "40", (OBJECTS[1], "height [cm]"): "x"}, into=inbox / "a.xlsx"
+    )
     aged(inbox / "b.xlsx", 7200)
     aged(inbox / "a.xlsx", 3600)
     dry = look(museum, dry_run=True)
@@ -187,7 +194,16 @@ def test_what_is_no_survey_is_refused_with_its_reason_and_ends_nothing(museum: P
     assert {name for name, one in took.items() if not one.ok} == bad
     assert {name for name, one in took.items() if one.ok} == {"good.xlsx"}
     assert inventory(museum)[OBJECTS[0]].height_m == 0.3
-    left = {"~$good.xlsx", ".hidden.xlsx", "..xlsx", "notes.txt", "folder.xlsx", "link.xlsx", "nowhere.xlsx", "pipe.xlsx"}
+    left = {
+        "~$good.xlsx",
+        ".hidden.xlsx",
+        "..xlsx",
+        "notes.txt",
+        "folder.xlsx",
+        "link.xlsx",
+        "nowhere.xlsx",
+        "pipe.xlsx",
+    }
     assert {one.name for one in inbox.iterdir()} == {*left, "taken", "refused"}
     put = sorted(one.name for one in (inbox / "refused").iterdir())
     assert len(put) == 2 * len(bad)

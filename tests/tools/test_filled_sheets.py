@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import zipfile
 from datetime import date, time
 from pathlib import Path
 from typing import Any
@@ -11,11 +10,9 @@ from typing import Any
 import openpyxl
 import pytest
 
-from pipeline.report.files.decisions_sheet import DECISIONS_SHEET
-from pipeline.report.files.rules_sheet import RULES_SHEET
 from tests.museum import kouros
 
-from .surveyed import OBJECTS, SHEET, copied, fill, inventory, museum_with_survey, row_of, write_rows
+from .surveyed import OBJECTS, SHEET, copied, fill, inventory, museum_with_survey, row_of
 
 pytestmark = pytest.mark.slow_file
 
@@ -132,7 +129,9 @@ def test_what_came_of_each_cell(museum: Path) -> None:
     assert {last[number].height_m for number in refused} == {0.12}
     assert [last[number].height_m for number in OBJECTS[: len(TAKEN)]] == [metres for _, metres, _ in TAKEN]
     sheet = openpyxl.load_workbook(museum / "s-refused.xlsx")[SHEET]
-    assert [c.coordinate for row in sheet for c in row if c.comment] == [sheet.cell(row_of(sheet, OBJECTS[39]), at).coordinate]
+    assert [c.coordinate for row in sheet for c in row if c.comment] == [
+        sheet.cell(row_of(sheet, OBJECTS[39]), at).coordinate
+    ]
     assert not (museum / "s-refused-refused.xlsx").exists()
 
 

@@ -142,10 +142,11 @@ def _laid_over(item: Item, source: str, record: Mapping[str, Any]) -> Item:
     for name, value in fields.items():
         theirs = before[name]
         if theirs not in (*_NOTHING, value) and name not in ours:
+            sheet = sources.get(name, source)
             problems.append(
                 Problem(
                     name,
-                    f"the museum's record says {theirs}, the sheet {sources.get(name, source)} says {value}, which is used",
+                    f"the museum's record says {theirs}, the sheet {sheet} says {value}, which is used",
                     "see which is right: mend the museum's record, or fill in a new sheet",
                 )
             )

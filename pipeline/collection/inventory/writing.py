@@ -184,9 +184,7 @@ def _there(connection: Connection, numbers: Sequence[str]) -> set[str]:
     return {row.object_number for some in numbered(numbers) for row in connection.execute(wanted.where(some))}
 
 
-def _over(
-    before: tuple[str, dict[str, Any]] | None, source: str, record: dict[str, Any]
-) -> tuple[str, dict[str, Any]]:
+def _over(before: tuple[str, dict[str, Any]] | None, source: str, record: dict[str, Any]) -> tuple[str, dict[str, Any]]:
     """Return what an object's sheets fill in together; one that says what they say already changes nothing."""
     if before is None:
         return source, record
