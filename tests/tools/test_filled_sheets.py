@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import zipfile
 from datetime import date, time
 from pathlib import Path
 from typing import Any
@@ -205,3 +207,26 @@ def test_refused_cells_of_a_csv_are_listed_beside_it(museum: Path) -> None:
     assert "row 3, height_m" in line
     assert "'tall' is no number" in line
     assert inventory(museum)[OBJECTS[0]].height_m == 1.5
+
+
+def test_a_workbook_in_the_style_of_libreoffice(museum: Path) -> None:
+    """It names the kind of every number, gives every row its height, and says that the sheet is 1,024 columns wide."""
+    made = fill(museum / "s.xlsx", {(OBJECTS[0], "height [cm]"): 8.5, (OBJECTS[1], "height [cm]"): "8 1/2"})
+    other = museum / "libre.xlsx"
+    with zipfile.ZipFile(made) as before, zipfile.ZipFile(other, "w", zipfile.ZIP_DEFLATED) as after:
+        for name in before.namelist():
+            content = before.read(name)
+            if name == "xl/worksheets/sheet1.xml":
+                text = content.decode()
+                text, numbers = re.subn(r'(<c r="[A-Z]+\d+"(?: s="\d+")?)(?: t="n")?><v>', r'\1 t="n"><v>', text)
+                assert numbers >= 1
+                text, sizes = re.subn(r'<dimension ref="[^"]*"', '<dimension ref="A1:AMJ42"', text)
+                assert sizes == 1
+                rows = ' customFormat="false" ht="12.8" hidden="false" customHeight="false" outlineLevel="0"'
+                text = re.sub(r'<row r="(\d+)"[^>]*>', rf'<row r="\1"{rows}>', text)
+                empty = f'<row r="1048576"{rows}></row></sheetData>'
+                content = text.replace("</sheetData>", empty).encode()
+            after.writestr(name, content)
+    assert set(taken_up(museum, "libre.xlsx")["changes"]["changed"]) == set(OBJECTS[:2])
+    now = inventory(museum)
+    assert [now[number].height_m for number in OBJECTS[:2]] == [0.085, 0.085]
