@@ -52,7 +52,7 @@ def test_a_measure_is_installed_in_the_readers_units(visitor: Visitor, museum: P
         ({"kind": "accept", "why": " "}, "reason"),
         ({"kind": "accept", "why": "x" * 3000}, "2000"),
         ({"kind": "accept", "why": "w", "until": "2001-01-01"}, "before the decision"),
-        ({"kind": "installed", "measure": "clearance", "why": "w", "p.clearance": "-3"}, "no number"),
+        ({"kind": "installed", "measure": "clearance", "why": "w", "p.clearance": "-3"}, "is negative"),
         ({"kind": "installed", "measure": "../etc", "why": "w"}, "which measure"),
         ({"kind": "class", "class": "<b>", "why": "w"}, "no class"),
         ({"kind": "nonsense", "why": "w"}, "what you decide"),
