@@ -282,7 +282,7 @@ class Cells:
     def _by_hand(self, name: str, column: ColumnMap, text: str) -> float | None:
         unit = column.unit or plausible()[name].unit
         try:
-            found = of_hand(text, unit)
+            found = of_hand(text, unit, signed=plausible()[name].low < 0.0)
         except InputError as problem:
             self._note(name, column, str(problem), f"write one number{_in_unit(unit)}, as 8 1/2 or 0.3")
             return None

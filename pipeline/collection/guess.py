@@ -13,7 +13,7 @@ from pipeline.collection.display_words import says_away
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
-from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among
+from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
 from pipeline.collection.guessing.names import bare
 from pipeline.collection.guessing.source import GuessNotes, columns_in, database, objects_of, source_of, workbook
 from pipeline.collection.mapping import MAPPABLE, PRESETS, load_mapping, preset_names
@@ -151,6 +151,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         picture = images_among(columns, [column for name, column in found.items() if name != "image"])
         if "image" not in found and picture is not None:
             found["image"] = picture
+        if "image" in found:
+            told.doubts.append(pictures_said(columns, found["image"], found.values()))
     fields, used = Fields(columns, told.choices, told.doubts, told.questions).mapped(found)
     document["columns"] = fields
     texts = texts_among(columns, used)

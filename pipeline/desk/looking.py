@@ -308,6 +308,7 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
     about = [one for one in run.objects if one.on_display and given["class"] in ("", one.object_class)
              and given["gallery"] in ("", one.gallery)]  # fmt: skip
     return {
+        "asked": run.rule_questions,
         "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house],
         "classes": sorted(run.classes), "counts": run.classes,
         "galleries": sorted(run.galleries), "vocabularies": VOCABULARIES, "quantities": QUANTITIES,

@@ -10,6 +10,8 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from pipeline.analysis.house.questions import MANY, stated_by
+from pipeline.analysis.survey import field_asked
 from pipeline.desk.errors import DeskError
 from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.workspace import Workspace
@@ -130,6 +132,16 @@ class RunFacts:
     def urgent(self) -> tuple[ListedObject, ...]:
         """The objects on display that are to act on, the most urgent first."""
         return tuple(sorted((one for one in self.objects if one.state == State.ACT), key=lambda one: one.rank))
+
+    @cached_property
+    def rule_questions(self) -> tuple[tuple[str, str, int], ...]:
+        """What one house rule may answer for many objects: class, what it states, how many wait for that first."""
+        alike = Counter((o.object_class, o.open_for, o.missing) for o in self.objects if o.on_display)
+        open_ones: Counter[tuple[str, str]] = Counter()
+        for (kind, parameter, missing), count in alike.items():
+            open_ones[kind, stated_by(field_asked(parameter, missing))] += count
+        many = [(kind, states, count) for (kind, states), count in open_ones.items() if states and count >= MANY]
+        return tuple(sorted(many, key=lambda one: (-one[2], one[0], one[1])))
 
     @cached_property
     def states(self) -> Counter[str]:

@@ -175,7 +175,12 @@ def _withdrawal(wish: Wish) -> tuple[object, ...] | None:
 
 def _refused(row: int, problem: InputError) -> CellFault:
     said = str(problem)
-    column = next((column for option, column in _OPTIONS.items() if said.startswith(option)), "")
+    told = (
+        column
+        for option, column in _OPTIONS.items()
+        if said.startswith((option, f"there is no {column} ")) or f"by {option} " in said
+    )
+    column = next(told, "")
     if not column:
         column = "object_number" if said.startswith("there is no object") else "what"
     for option, name in _OPTIONS.items():

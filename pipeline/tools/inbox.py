@@ -11,7 +11,7 @@ from pipeline.operations.event_log import note
 from pipeline.operations.workspace import locked, open_workspace
 from pipeline.quantities import counted
 from pipeline.settings import Settings
-from pipeline.tools.sheet_answers import SheetTaken, take_sheet
+from pipeline.tools.sheet_answers import SheetTaken, bounded, take_sheet
 
 TAKEN, REFUSED = "taken", "refused"
 """Folders in it: of what was taken up, and of what was refused, with the reasons."""
@@ -81,8 +81,6 @@ def take_inbox(settings: Settings, config: Path, *, dry_run: bool = False) -> li
 
 def _waiting(inbox: Path) -> list[Path]:
     """Return the files that wait; hidden ones, locks of spreadsheet programs, and links are none."""
-    if not inbox.is_dir():
-        return []
     found = [
         file
         for file in inbox.iterdir()
@@ -123,11 +121,11 @@ def _refused(file: Path, why: str, *, dry_run: bool) -> InboxFile:
 
 def _moved(file: Path, folder: str) -> Path:
     """Move a file into a folder beside it, under a name that nothing there has."""
-    target = file.parent / folder / f"{datetime.now():%Y%m%dT%H%M%S}-{file.name}"
+    target = file.parent / folder / f"{datetime.now():%Y%m%dT%H%M%S}-{bounded(file.stem)}{file.suffix}"
     target.parent.mkdir(exist_ok=True)
-    number = 2
+    first, number = target.stem, 2
     while target.exists():
-        target = target.with_name(f"{target.stem}-{number}{target.suffix}")
+        target = target.with_name(f"{first}-{number}{target.suffix}")
         number += 1
     file.replace(target)
     return target
@@ -148,5 +146,7 @@ def _in_words(taken: SheetTaken, *, dry_run: bool) -> str:
 
 
 def _told(name: str, words: str, *, ok: bool) -> InboxFile:
+    # In a line each, whatever a file is called.
+    name, words = ("".join(c if c.isprintable() else "?" for c in text) for text in (name, words))
     note("survey.inbox", level=logging.INFO if ok else logging.WARNING, file=name, message=words)
     return InboxFile(name, words, ok)

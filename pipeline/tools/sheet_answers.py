@@ -1,5 +1,8 @@
 """A survey that was filled in: measurements, house rules and decisions are taken up, and refused cells come back."""
 
+import logging
+import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,16 +11,22 @@ from pipeline.collection.inventory import Difference, add_sheet, object_numbers
 from pipeline.collection.inventory.local_measurements import filled_in
 from pipeline.collection.reading import Reading
 from pipeline.collection.sources.xlsx import visible_sheets
+from pipeline.errors import fault_words
+from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Decision
-from pipeline.report.files.marked_copy import CellFault, write_marked
+from pipeline.report.files.marked_copy import CellFault, write_listed, write_marked
 from pipeline.report.files.survey_sheet import column_name, sheet_title
 from pipeline.tools.decision_answers import decision_rows, take_decisions
 from pipeline.tools.house_answers import add_rules, rules_of
 from pipeline.tools.survey import LENGTH_UNITS, read_sheet
 
 MARKED = "-refused"
-"""What the name of the copy with refused cells has behind that of the workbook."""
+"""What the name of the copy with refused cells has behind that of the workbook, or of a text of them."""
+
+
+_LONGEST = 200
+"""Bytes of a file's name at most: file systems allow 255, and something is put before it and behind it."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +50,7 @@ class SheetTaken:
     faults : tuple of CellFault
         The cells that were refused.
     marked : Path or None
-        The copy of the workbook in which they are marked; None where there is none.
+        The copy of the workbook in which they are marked, or a text of them; None where there are none.
     empty : bool
         Whether all that it says was refused.
     """
@@ -110,13 +119,33 @@ def take_sheet(
     decided = take_decisions(workspace, wishes, broken, dry_run=dry_run)
     added = add_rules(config, rules.rules, dry_run=dry_run)
     faults = (*cells, *rules.faults, *decided.faults)
-    marked = None
-    if faults and path.suffix.lower() == ".xlsx":
-        marked = (beside or path.parent) / f"{path.stem.removesuffix(MARKED)}{MARKED}.xlsx"
-        if not dry_run:
-            write_marked(path, faults, marked)
+    marked = _marked(path, faults, beside or path.parent, dry_run=dry_run) if faults else None
     nothing = bool(faults) and changes is None and not (rules.rules or decided.made or decided.known)
     return SheetTaken(reading, changes, unknown, added, decided.made, decided.known, faults, marked, nothing)
+
+
+def bounded(stem: str) -> str:
+    """Return the stem of a file's name so far as a name may have more before it and behind it."""
+    return os.fsdecode(os.fsencode(stem)[:_LONGEST])
+
+
+def _marked(path: Path, faults: Sequence[CellFault], folder: Path, *, dry_run: bool) -> Path:
+    """Write the copy of a workbook in which the refused cells are marked, or a text of them where there can be none."""
+    name = f"{bounded(path.stem.removesuffix(MARKED))}{MARKED}"
+    target, listed = folder / f"{name}.xlsx", folder / f"{name}.txt"
+    if path.suffix.lower() != ".xlsx":
+        target = listed
+    if dry_run:
+        return target
+    if target != listed:
+        try:
+            write_marked(path, faults, target)
+        except Exception as problem:  # noqa: BLE001 - what was taken is taken; parts of it that nobody needs may be odd
+            note("survey.unmarked", level=logging.WARNING, file=path.name, message=fault_words(problem))
+        else:
+            return target
+    write_listed(faults, listed)
+    return listed
 
 
 def _faults(reading: Reading, path: Path, unknown: set[str]) -> list[CellFault]:

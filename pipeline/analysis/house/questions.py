@@ -87,6 +87,11 @@ class RuleQuestion:
         return self.criteria | {self.field: value, "said_by": "", "said_on": when}
 
 
+def stated_by(field: str) -> str:
+    """Return what a house rule states that a measurement of a field would say; "" where none does."""
+    return _STATED.get(field, "")
+
+
 def rule_questions(scenes: Iterable[Scene], wishes: Iterable[MeasurementRequest]) -> list[RuleQuestion]:
     """Return the questions that one rule answers for many objects, what settles most first.
 

@@ -89,6 +89,31 @@ def images_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | 
     return max(able, key=lambda one: (len(one.filled), "thumb" not in one.name.casefold()), default=None)
 
 
+def pictures_said(columns: Sequence[Column], taken: Column, used: Iterable[Column]) -> str:
+    """Return in words which column is taken to name photographs, and which others may.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    taken : Column
+        That which is taken.
+    used : iterable of Column
+        Those that are fields, and so name none.
+
+    Returns
+    -------
+    str
+    """
+    fields = {id(column) for column in used}
+    others = [one.name for one in columns if id(one) not in fields and one.filled and one.pictured > 0.8]
+    first = next(filter(None, taken.filled), "")
+    said = f"column {taken.name!r} is taken to name photographs, such as {first[:80]!r}"
+    if others:
+        said += f"; so may {', '.join(map(repr, others))}: --choose image=COLUMN takes another"
+    return said
+
+
 def flag_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
     """Return the column all of whose words say whether an object is on display, and not yes and no alone.
 

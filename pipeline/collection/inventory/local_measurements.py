@@ -26,7 +26,8 @@ SUPPLEMENT = Table(
 )
 """One row for each state of an object's own sheet; since and until are versions, as in the table item.
 
-record : the fields that were filled in, JSON-ready, with their provenance
+record : the fields that were filled in, JSON-ready, with their provenance; what an earlier sheet than the source says
+         has the key "sheet" there, with the source of that
 """
 
 _MUSEUMS = frozenset(
@@ -137,18 +138,24 @@ def _laid_over(item: Item, source: str, record: Mapping[str, Any]) -> Item:
     fields = {name: value for name, value in record.items() if name in KINDS and name != "provenance"}
     problems = [problem for problem in item.problems if problem.field not in fields]
     ours = {of.field for of in item.provenance if of.note.startswith(_SHEET)}
+    sources = {of["field"]: of.get("sheet", source) for of in record["provenance"]}
     for name, value in fields.items():
         theirs = before[name]
         if theirs not in (*_NOTHING, value) and name not in ours:
+            sheet = sources.get(name, source)
             problems.append(
                 Problem(
                     name,
-                    f"the museum's record says {theirs}, the sheet {source} says {value}, which is used",
+                    f"the museum's record says {theirs}, the sheet {sheet} says {value}, which is used",
                     "see which is right: mend the museum's record, or fill in a new sheet",
                 )
             )
     kept = [of for of in before["provenance"] if of["field"] not in fields]
-    noted = [of | {"note": f"{_SHEET}{source}{'; ' if of['note'] else ''}{of['note']}"} for of in record["provenance"]]
+    noted = [
+        {name: value for name, value in of.items() if name != "sheet"}
+        | {"note": f"{_SHEET}{sources[of['field']]}{'; ' if of['note'] else ''}{of['note']}"}
+        for of in record["provenance"]
+    ]
     provenance = sorted([*kept, *noted], key=lambda of: of["field"])
     (merged,) = to_items([before | fields | {"provenance": provenance, "problems": []}])
     return replace(merged, problems=tuple(problems))

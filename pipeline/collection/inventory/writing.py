@@ -146,24 +146,25 @@ def add_sheet(
     """
     moment = _moment(when)
     with engine.begin() as connection:
-        now = read_records(connection, current())
-        there = {item.object_number for item in now}
+        filled = {item.object_number: record for item in reading.items if (record := filled_in(item))}
+        there = _there(connection, [item.object_number for item in reading.items])
         unknown = [item.object_number for item in reading.items if item.object_number not in there]
         sheets = local_measurements.current(connection)
-        new = {}
-        for item in reading.items:
-            record = filled_in(item)
-            if record and item.object_number in there:
-                _, before = sheets.get(item.object_number, ("", {"provenance": []}))
-                older = [of for of in before["provenance"] if of["field"] not in record]
-                whole = before | record | {"provenance": [*older, *record["provenance"]]}
-                new[item.object_number] = (reading.source, whole)
+        new = {
+            number: _over(sheets.get(number), reading.source, record)
+            for number, record in filled.items()
+            if number in there
+        }
         if not new:
             raise CollectionError(
                 f"{reading.source}: no row fills in anything for an object of the inventory. {_first(reading)}"
             )
+        # Only their own records: a tablet beside one object does not wait for all those of the museum.
+        now = [one for some in numbered(sorted(new)) for one in read_records(connection, and_(current(), some))]
+        total = connection.execute(select(func.count()).select_from(ITEM).where(current())).scalar_one()
         items = laid_over(now, new)
-        found, digests = _difference(connection, items, verify=False)
+        others = Unread(total - len(now), frozenset(), frozenset(), ())
+        found, digests = _difference(connection, items, others)
         if dry_run:
             return found, unknown
         below = version = newest(connection) or 0
@@ -172,9 +173,33 @@ def add_sheet(
                 connection, items, digests, found, _described(reading) | _stamp(moment) | {"kind": "sheet"}
             )
             local_measurements.store(connection, sheets | new, version)
-        filled = {(number, name) for number, (_, record) in new.items() for name in record}
-        reading_report.note_sheet(connection, version, below, reading, set(unknown), filled, _doubtful(connection))
+        cells = {(number, name) for number in new for name in filled[number]}
+        reading_report.note_sheet(connection, version, below, reading, set(unknown), cells, _doubtful(connection))
     return found, unknown
+
+
+def _there(connection: Connection, numbers: Sequence[str]) -> set[str]:
+    """Return which objects the inventory has."""
+    wanted = select(ITEM.c.object_number).where(current())
+    return {row.object_number for some in numbered(numbers) for row in connection.execute(wanted.where(some))}
+
+
+def _over(before: tuple[str, dict[str, Any]] | None, source: str, record: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Return what an object's sheets fill in together; one that says what they say already changes nothing."""
+    if before is None:
+        return source, record
+    older, known = before
+    said = {of["field"]: of for of in known["provenance"]}
+    same = all(known.get(name) == value for name, value in record.items() if name != "provenance")
+    if same and all(_told(said.get(of["field"], {})) == of for of in record["provenance"]):
+        return before
+    # Who measured what stays with it: a later sheet speaks for its own cells alone.
+    kept = [{"sheet": older} | of for of in known["provenance"] if of["field"] not in record]
+    return source, known | record | {"provenance": [*kept, *record["provenance"]]}
+
+
+def _told(of: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in of.items() if name != "sheet"}
 
 
 def return_to(engine: Engine, version: int, *, when: datetime | None = None, dry_run: bool = False) -> Difference:

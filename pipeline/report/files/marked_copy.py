@@ -36,6 +36,13 @@ class CellFault:
         return f"{self.place}: {self.message}; {self.remedy}"
 
 
+def write_listed(faults: Sequence[CellFault], target: Path) -> None:
+    """Write the refused cells as a text, a line each, for a file in which none can be marked."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(target) as aside:
+        aside.write_text("".join(f"{clean(str(fault))[:_LONGEST]}\n" for fault in faults), encoding="utf-8")
+
+
 def write_marked(path: Path, faults: Sequence[CellFault], target: Path) -> None:
     """Write the copy; marks of an earlier one are taken away first.
 
@@ -62,9 +69,16 @@ def write_marked(path: Path, faults: Sequence[CellFault], target: Path) -> None:
         at = heads.get(fault.column, 1)
         told.setdefault((fault.sheet, max(fault.row, 1), at), []).append(f"{fault.message}. {fault.remedy}.")
     for (sheet, row, at), words in told.items():
-        cell = names[sheet].cell(row, at)
+        page = names[sheet]
+        cell = page.cell(row, at)
+        # Of merged cells only the first one is seen, and can be marked.
+        for merged in page.merged_cells.ranges:
+            if cell.coordinate in merged:
+                cell = page.cell(merged.min_row, merged.min_col)
         cell.fill = PatternFill("solid", fgColor=_RED)
-        comment = Comment(clean("\n".join(words))[:_LONGEST], AUTHOR)
+        # What somebody else remarked on it stays, ours and more words of the same cell first.
+        before = "" if cell.comment is None else f"\n{cell.comment.text}"
+        comment = Comment(clean("\n".join(words) + before)[:_LONGEST], AUTHOR)
         comment.width, comment.height = 320, 120
         cell.comment = comment
     for page in book.worksheets:
