@@ -13,7 +13,7 @@ from pipeline.desk.saying import signed
 from pipeline.errors import InputError, KourosError
 from pipeline.event.answer import ObjectAnswer
 from pipeline.event.found import NOTE_LIMIT, STATES, FoundObject, distance_said
-from pipeline.report.language import _, said
+from pipeline.report.language import said
 from pipeline.report.pages.event_page import told_of
 from pipeline.report.text import short
 from pipeline.report.units import Units
@@ -184,7 +184,7 @@ def _gallery_context(
 def _shared(asked: Asked, facts: EventFacts, query: Mapping[str, str], problem: str) -> dict[str, Any]:
     down = facts.document["expected"]
     return {
-        "event": facts.event, "title": facts.event.title or _("An earthquake"), "problem": problem,
+        "event": facts.event, "title": facts.event.title, "problem": problem,
         "exercise": bool(facts.document["event"].get("scenario")), "down": down, "fallen": f"{down['fallen']:.0f}",
         "open": facts.open, "saved": query.get("saved", ""),
         "by": query.get("who", "")[:200] or asked.who.name,
