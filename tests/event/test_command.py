@@ -20,7 +20,8 @@ from pipeline.report.files.event_files import EVENT_COLUMNS
 from pipeline.resources import resource
 from pipeline.settings import load_settings
 from pipeline.store.codec import StoreError
-from pipeline.tools.event import EVENTS, EventDone, TypedShaking, answer_event
+from pipeline.tools.event import EventDone, TypedShaking, answer_event
+from pipeline.tools.event_folders import EVENTS
 from pipeline.tools.synthetic import synthesise
 from tests.cli.test_dry_runs import digest, say
 from tests.event.messages import DATA, NOW, PARK, alert
