@@ -213,6 +213,9 @@ def test_reports_from_the_galleries_condition_the_rest_and_stay(museum: Path, tm
     one = next(one for one in second.document["objects"] if one["object_number"] == "1")
     assert (one["reported"], one["states"].get("falls", 0.0)) == ("standing", 0.0)
     assert "found: standing" in (second.folder / "objects.csv").read_text("utf-8")
+    pages = [(done.folder / "index.html").read_text("utf-8") for done in (first, second)]
+    assert ["Nobody has looked yet" in page for page in pages] == [True, False]
+    assert "What was found of 1 object is counted" in pages[1]
     # What was told holds for whatever comes later of the same earthquake.
     third = ask(museum, typed=TypedShaking(0.4))
     assert [one["reported"] for one in third.document["objects"]].count("standing") == 1
