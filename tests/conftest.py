@@ -6,9 +6,10 @@ import gc
 import os
 import tempfile
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from itertools import count
 from pathlib import Path
 from shutil import rmtree
 from typing import Any
@@ -82,12 +83,23 @@ def postgresql_server() -> Iterator[Any]:
 
 
 @pytest.fixture(scope="session")
-def postgresql_url() -> Iterator[str]:
-    """The URL of an empty database on a server that lives as long as the session."""
+def postgresql_databases() -> Iterator[Callable[[], str]]:
+    """Makes an empty database on a server that lives as long as the session, and returns its URL."""
     with postgresql_server() as server:
-        name = f"kouros_{os.getpid()}"
-        server.psql(f"CREATE DATABASE {name};")
-        yield server.get_uri(database=name)
+        numbers = count()
+
+        def made() -> str:
+            name = f"kouros_{os.getpid()}_{next(numbers)}"
+            server.psql(f"CREATE DATABASE {name};")
+            return str(server.get_uri(database=name))
+
+        yield made
+
+
+@pytest.fixture(scope="session")
+def postgresql_url(postgresql_databases: Callable[[], str]) -> str:
+    """The URL of a database that all tests of the session share: who needs it empty empties it."""
+    return postgresql_databases()
 
 
 @pytest.fixture(scope="session")

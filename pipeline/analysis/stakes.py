@@ -36,6 +36,14 @@ SLENDER_FIGURE = 9.0
 
 _FIGURES = ("statue", "standing_figure")
 
+SLENDER_BOWL = 2.5
+"""The same of plates, dishes and bowls: of 157 at the Carnegie Museum of Art all but five are less than 1.75 times as
+high as they are deep, and those five are exchanged sides, a plate on its edge, or a digit that is missing."""
+
+_BOWLS = ("dish",)
+_BOWL_RULES = ("deep-bowl",)
+"""Classes, and rules of others, of what is as broad as a bowl."""
+
 
 class Stake(RangeRow):
     """A row of stakes.csv: a weight [-], or an energy [J]."""
@@ -195,4 +203,10 @@ def doubtful(scene: Scene) -> float:
     if item.base_width_m or item.base_depth_m or item.contact_polygon or item.tilt_angle_deg is not None:
         return 0.0
     ratio = item.height_m / min(sides)
-    return ratio if ratio >= (SLENDER_FIGURE if scene.object_class in _FIGURES else SLENDER) else 0.0
+    return ratio if ratio >= _slenderest(scene) else 0.0
+
+
+def _slenderest(scene: Scene) -> float:
+    if scene.object_class in _BOWLS or scene.rule.partition(":")[0] in _BOWL_RULES:
+        return SLENDER_BOWL
+    return SLENDER_FIGURE if scene.object_class in _FIGURES else SLENDER

@@ -16,13 +16,12 @@ from starlette.routing import Route
 from pipeline.desk import looking, saying, shaken
 from pipeline.desk.accounts import Attempts, digest, signed_in
 from pipeline.desk.asking import Asked, DeskAnswer
-from pipeline.desk.errors import NotThereError
+from pipeline.desk.errors import BodyTooLongError, NotThereError
 from pipeline.desk.guard import (
     FORM_BYTES,
     FORM_COOKIE,
     REPORT_POLICY,
     SESSION_COOKIE,
-    BodyTooLongError,
     Guard,
     Person,
     form_seed,

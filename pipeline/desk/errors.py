@@ -13,3 +13,7 @@ class StaleError(DeskError):
 
 class NotThereError(DeskError):
     """There is no such object, gallery or errand."""
+
+
+class BodyTooLongError(DeskError):
+    """More is sent than is taken."""

@@ -16,6 +16,7 @@ from starlette.responses import PlainTextResponse
 
 from pipeline.collection.database import Database
 from pipeline.desk.accounts import of_token
+from pipeline.desk.errors import BodyTooLongError
 from pipeline.settings.serve import LOCAL, ServeSettings
 from pipeline.tools.decisions import WHO_LIMIT, WHO_VARIABLE
 
@@ -137,10 +138,6 @@ class Guard:
             await send(message)
 
         await app(scope, receive, headed)
-
-
-class BodyTooLongError(Exception):
-    """More is sent than is taken."""
 
 
 def _too_long(most: int) -> PlainTextResponse:

@@ -40,7 +40,8 @@ from pipeline.store.pages import Members, known_pages, page_digest
 from pipeline.store.results import KeptResult, Made, Stored, copy, fetch, forget, keep, known
 
 FEW = 4_000
-"""Objects to be assessed or shown for which other processes do not pay: they take seconds to start."""
+"""Objects to be assessed or shown for which other processes do not pay: each takes seconds to start, and does again
+what all objects need, such as the spectra of a site; up to here threads share the kernels of one process."""
 
 BATCH = 16_000
 """Units, about, that one worker assesses together at most: each model is called once for all of them under each

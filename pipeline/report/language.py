@@ -6,7 +6,7 @@ CLDR that Babel carries.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -122,6 +122,11 @@ def _shipped(locale: str) -> bytes | None:
     return None
 
 
+def parted(parts: Iterable[str]) -> str:
+    """Return the parts of a sentence with what parts them in the language: in Greek ";" asks."""
+    return _("; ").join(parts)
+
+
 _NAMES = re.compile(r"%\((\w+)\)s|\{(\w+)\}")
 
 
@@ -161,18 +166,22 @@ def local(number: str) -> str:
     return number if tag == "en" else number.translate(_marks(tag))
 
 
+_DAY = len("2026-03-01")
+
+
 def moment(text: str) -> str:
-    """Return a time, ISO 8601 in UTC, to the minute, as the reader's language writes it; in English as it is."""
+    """Return a time, ISO 8601, to the minute, or a day, as the reader's language writes it; in English as it is."""
     try:
         when = datetime.fromisoformat(text)
     except ValueError:
         return text
     tag = _TAG.get()
     if _locale(tag) is None or tag.partition("-")[0] == "en":
-        return f"{when:%Y-%m-%d %H:%M}"
+        return text if len(text) == _DAY else f"{when:%Y-%m-%d %H:%M}"
     from babel.dates import format_date
 
-    return f"{format_date(when, 'medium', locale=_locale(tag))}, {when:%H:%M}"
+    day = str(format_date(when, "medium", locale=_locale(tag)))
+    return day if len(text) == _DAY else f"{day}, {when:%H:%M}"
 
 
 @lru_cache

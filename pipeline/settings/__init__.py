@@ -76,7 +76,7 @@ class MuseumSettings(_Part):
         except (ZoneInfoNotFoundError, ValueError, OSError):
             close = get_close_matches(name[:64], available_timezones(), 3, 0.5)
             hint = f"; close to it: {', '.join(close)}" if close else ""
-            raise ValueError(f'there is no time zone {name!a}; name one such as "Europe/Rome"{hint}') from None
+            raise InputError(f'there is no time zone {name!a}; name one such as "Europe/Rome"{hint}') from None
         return name
 
 

@@ -68,16 +68,16 @@ def verify_columns(engine: Engine) -> Iterator[RowDamage]:
     ------
     RowDamage
     """
-    looked, dialect = inspect(engine), engine.dialect
+    looked = inspect(engine)
     there = set(looked.get_table_names())
     for table in METADATA.tables.values():
-        made = {c.name: (c.type.compile(dialect), bool(c.nullable), c.primary_key) for c in table.columns}
+        made = {c.name: (str(c.type), bool(c.nullable), c.primary_key) for c in table.columns}
         keys = set(looked.get_pk_constraint(table.name)["constrained_columns"]) if table.name in there else set()
         found = {
-            c["name"]: (c["type"].compile(dialect), bool(c["nullable"]), c["name"] in keys)
+            c["name"]: (str(c["type"]), bool(c["nullable"]), c["name"] in keys)
             for c in (looked.get_columns(table.name) if table.name in there else ())
         }
-        if dialect.name != "sqlite":
+        if engine.dialect.name != "sqlite":
             # Servers tell the same type by another name, and do not keep it as a text that may rot.
             made, found = ({name: ("", *of[1:]) for name, of in side.items()} for side in (made, found))
         if made != found:

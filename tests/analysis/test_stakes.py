@@ -6,7 +6,7 @@ from math import exp
 import pytest
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.stakes import Term, counting, danger_of, expected_loss, stakes, value_of, worth_of
+from pipeline.analysis.stakes import Term, counting, danger_of, doubtful, expected_loss, stakes, value_of, worth_of
 from pipeline.records import Assessment, Band, Estimate, Furniture, Item, Likelihood, Origin, Scene, Support
 from tests.museum import VASE
 
@@ -112,3 +112,25 @@ def test_the_expected_loss_is_the_sum_over_harm_and_over_the_fall() -> None:
 def test_every_row_of_the_table_says_what_it_may_be() -> None:
     for name, row in stakes().items():
         assert row.low <= row.value <= row.high, name
+
+
+@pytest.mark.parametrize(
+    ("name", "sizes", "times"),
+    [
+        # Carnegie 93.117: a diameter of 1.25 in for, probably, 10.25 in.
+        ("Punch bowl", (0.1143, 0.03175, 0.03175), 3.6),
+        ("Covered Bowl", (0.130175, 0.130175, 0.0762), 0.0),
+        # A platter on its edge, or with its sides exchanged.
+        ("Platter", (0.66675, 0.55245, 0.06985), 9.5),
+        ("Bottle", (0.3, 0.08, 0.08), 0.0),
+        ("Bottle", (0.6, 0.08, 0.08), 7.5),
+    ],
+)
+def test_what_no_such_thing_is_as_slender_as_has_a_doubtful_record(
+    name: str, sizes: tuple[float, float, float], times: float
+) -> None:
+    height, width, depth = sizes
+    item = replace(VASE, title=name, height_m=height, width_m=width, depth_m=depth)
+    assert doubtful(classify(item)) == pytest.approx(times, abs=0.06)
+    # Who has measured its base has looked at it.
+    assert doubtful(classify(replace(item, base_width_m=0.03))) == 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 
@@ -52,7 +53,7 @@ def test_a_measure_is_installed_in_the_readers_units(visitor: Visitor, museum: P
         ({"kind": "accept", "why": " "}, "reason"),
         ({"kind": "accept", "why": "x" * 3000}, "2000"),
         ({"kind": "accept", "why": "w", "until": "2001-01-01"}, "before the decision"),
-        ({"kind": "installed", "measure": "clearance", "why": "w", "p.clearance": "-3"}, "no number"),
+        ({"kind": "installed", "measure": "clearance", "why": "w", "p.clearance": "-3"}, "negative"),
         ({"kind": "installed", "measure": "../etc", "why": "w"}, "which measure"),
         ({"kind": "class", "class": "<b>", "why": "w"}, "no class"),
         ({"kind": "nonsense", "why": "w"}, "what you decide"),
@@ -234,7 +235,10 @@ def test_a_following_night_takes_it_up(visitor: Visitor, museum: Path) -> None:
     assert run.run_id in page.text
 
 
-def test_it_works_on_a_postgresql_server(tmp_path: Path, postgresql_url: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_it_works_on_a_postgresql_server(
+    tmp_path: Path, postgresql_databases: Callable[[], str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    postgresql_url = postgresql_databases()
     monkeypatch.setenv("KOUROS_DATABASE", postgresql_url)
     folder = tmp_path / "museum"
     settings = museum_of(folder, vases(1, 2))

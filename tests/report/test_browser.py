@@ -86,6 +86,7 @@ def test_charts_are_painted_where_they_are_used(browser: Chrome, report: Path) -
 
 def test_it_prints_on_a4_with_its_details(browser: Chrome, report: Path) -> None:
     browser.get(next(report.glob("gallery-101*.html")).as_uri())
+    browser.find_element("id", "with-entries").click()  # They are printed on demand only.
     answer = browser.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": False})
     pdf = base64.b64decode(answer["data"])
     assert pdf.startswith(b"%PDF-")

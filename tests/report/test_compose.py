@@ -63,7 +63,7 @@ def test_an_object_with_a_missing_field_is_never_safe_and_its_failure_still_coun
     assert states == {"p": State.UNKNOWN, "f": State.ACT}
 
 
-def test_what_to_do_first_counts_objects_by_measure_and_spans_their_numbers() -> None:
+def test_what_to_do_first_counts_objects_by_measure_and_tells_each_its_numbers() -> None:
     items = [Item(str(i), "g") for i in range(3)]
     wide = [builder.sliding(i) for i in items]
     advice = tuple(
@@ -72,7 +72,9 @@ def test_what_to_do_first_counts_objects_by_measure_and_spans_their_numbers() ->
     )
     (task,) = shown(replace(builder.record(), assessments=advice), Units()).galleries[0].tasks
     assert len(task.objects) == 3
-    assert task.numbers == (("clearance", "10 to 14\u202fcm"),)
+    # Each of them its own, and no range over all.
+    assert [o.number for o in task.objects] == ["0", "1", "2"]
+    assert task.sets == tuple(f"clearance {n}\u202fcm" for n in (10, 12, 14))
 
 
 def test_an_object_that_no_measure_helps_is_named_at_its_place() -> None:

@@ -148,7 +148,7 @@ def test_the_rank_is_the_order_of_the_first_page_and_that_of_what_is_lost(tmp_pa
     with page.with_name("objects.csv").open(encoding="utf-8", newline="") as stream:
         ranks = {row["object_number"]: row["rank"] for row in csv.DictReader(stream)}
     assert ranks == {str(n): str(n) for n in range(1, 7)} | {"7": ""}
-    first = html.parse(page).xpath("//table[@class='urgent']/tbody/tr/th//text()")
+    first = html.parse(page).xpath("//table[@class='urgent rows']/tbody/tr/th//text()")
     shown = [text.strip() for text in first if text.strip() in ranks]
     assert shown == sorted(shown, key=lambda number: int(ranks[number]))
     assert shown == ["1", "2", "3", "4"]

@@ -10,7 +10,7 @@ from itertools import groupby
 from threading import Lock
 
 from pipeline.report.files.sheet_fonts import BOLD, LACKING, SANS, draw_text, ready, shown_letters, width_of
-from pipeline.report.language import Language, _, ngettext
+from pipeline.report.language import Language, _, moment, ngettext
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.walking import WalkRow, WalkView
 from pipeline.report.text import count, plain, short
@@ -22,8 +22,8 @@ _DRAWING = Lock()
 """Fonts of reportlab are for one document at a time."""
 
 _MARGIN, _SIZE, _LEADING, _PAD = 30.0, 7.5, 9.0, 3.0
-_LEAST = 21.0
-"""Height of a line in points, 7.4 mm: what people can write in."""
+_LEAST = 18.0
+"""Height of a line in points, 6.4 mm: what people can write in."""
 _PICTURE = 34.0
 """Side of the square of a picture in points, 12 mm."""
 _LINES = 40
@@ -132,13 +132,13 @@ class _Sheet:
         # Where something has a picture, the tick box has it beside.
         fixed = [
             _Column("", 16.0 + (_PICTURE + _PAD if self._images else 0.0), 0),
-            _Column(_("Object"), 82.0, _LINES),
+            _Column(_("Object"), 78.0, _LINES),
             _Column("", 0.0, 3),
-            _Column(_("What to do"), 96.0, 3),
-            _Column(_("Set to"), 92.0, 4),
-            _Column(_("Measured"), 66.0, 2),
+            _Column(_("What to do"), 112.0, 3),
+            _Column(_("Set to"), 98.0, 4),
+            _Column(_("Measured"), 62.0, 2),
             _Column(_("Initials"), 36.0, 0),
-            _Column(_("Date"), 42.0, 0),
+            _Column(_("Date"), 38.0, 0),
         ]
         fixed[2] = _Column(_("Title"), self._width - sum(one.width for one in fixed), 3)
         return tuple(fixed)
@@ -306,7 +306,7 @@ class _Sheet:
     def _foot(self, at: int, of: int) -> None:
         y = _MARGIN
         right = _("page %(number)s of %(of)s") % {"number": at, "of": of}
-        date = self._head.finished[:16].replace("T", " ")
+        date = moment(self._head.finished)
         middle = _("results of %(date)s") % {"date": date} if date else ""
         name = self._cut(self._name, SANS, 7.0, 0.45 * self._width)
         self._text(_MARGIN, y, name, SANS, 7.0, _GREY)

@@ -47,7 +47,10 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
     slender = doubtful(assessment.scene)
     check = ""
     if slender:
-        check = _("Check its record first: it is %(times)s times as high as it is deep, and hardly stands by itself.")
+        check = _(
+            "Check its record first: it is %(times)s times as high as it is deep, "
+            "and such a thing hardly stands like that."
+        )
         check %= {"times": local(f"{slender:.1f}")}
     unnamed = _unnamed(found)
     if unnamed:

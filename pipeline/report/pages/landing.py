@@ -7,7 +7,7 @@ from typing import Any
 from urllib.parse import quote
 from zoneinfo import ZoneInfo
 
-from pipeline.report.language import Language, speaking
+from pipeline.report.language import Language, moment, speaking
 from pipeline.report.pages.environment import environment, fill, script_of
 from pipeline.report.pages.news import NewsView, kept_view
 from pipeline.report.pages.views import StateCounts
@@ -90,11 +90,11 @@ def _moment(text: str, zone: tzinfo) -> Moment:
     return Moment() if found is None else Moment(told(found, zone), found.astimezone(UTC).isoformat(timespec="seconds"))
 
 
-def told(moment: datetime, zone: tzinfo) -> str:
+def told(when: datetime, zone: tzinfo) -> str:
     """Return a moment as people of a time zone say it; where its hours have no name of their own, with the offset."""
-    local = moment.astimezone(zone)
+    local = when.astimezone(zone)
     name = local.tzname() or ""
-    return f"{local:%Y-%m-%d %H:%M} {f'UTC{name}' if name[:1] in ('+', '-') else name}".strip()
+    return f"{moment(local.isoformat())} {f'UTC{name}' if name[:1] in ('+', '-') else name}".strip()
 
 
 def _read(text: str) -> datetime | None:

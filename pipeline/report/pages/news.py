@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from pipeline.records import Band, Brief, NewsKind, ObjectChange, RunChanges, Settled, State
-from pipeline.report.language import _, ngettext, said
+from pipeline.report.language import _, ngettext, parted, said
 from pipeline.report.pages.chances import band_word
 from pipeline.report.pages.views import Pointer
 from pipeline.report.text import clean, count, plain, short, words
@@ -308,7 +308,7 @@ def _decided(one: ObjectChange) -> str:
         % {"what": short(said(clean(each.matter)), 120), "who": short(each.who, 60)}
         for each in one.decided
     ]
-    return "; ".join(told)
+    return parted(told)
 
 
 def _why(one: ObjectChange) -> str:

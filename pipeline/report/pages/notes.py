@@ -7,7 +7,7 @@ from itertools import groupby
 
 from markupsafe import Markup, escape
 
-from pipeline.report.language import _
+from pipeline.report.language import _, parted
 from pipeline.report.pages.views import NumberView, ObjectView
 
 _HEAD = 48
@@ -40,7 +40,7 @@ class Notes:
                 sources.setdefault(text, {})[source] = None
         shared = [text for text, times in uses.items() if times > 1]
         self.listed = tuple(
-            PageNote(f"{letter}{i}", text, "; ".join(sources.get(text, ()))) for i, text in enumerate(shared, 1)
+            PageNote(f"{letter}{i}", text, parted(sources.get(text, ()))) for i, text in enumerate(shared, 1)
         )
         self._headed = headed
         self._places = {note.text: at for at, note in enumerate(self.listed)}
@@ -59,7 +59,7 @@ class Notes:
         key = tuple(texts)
         if key not in self._cited:
             parts = [self._run(run) for run in self._runs(key)]
-            self._cited[key] = Markup("; ".join(parts))  # noqa: S704 - each part is escaped in _run
+            self._cited[key] = Markup(parted(parts))  # noqa: S704 - each part is escaped in _run
         return self._cited[key]
 
     def _runs(self, texts: Sequence[str]) -> list[list[str]]:
@@ -78,7 +78,7 @@ class Notes:
         if texts[0] not in self._places:
             return escape(texts[0])
         first, last = (self.listed[self._places[text]].label for text in (texts[0], texts[-1]))
-        heads = "; ".join(filter(None, map(_head, texts))) if self._headed else ""
+        heads = parted(filter(None, map(_head, texts))) if self._headed else ""
         labels = first if first == last else _("%(first)s to %(last)s") % {"first": first, "last": last}
         return _link(first, f"{heads} {labels}".strip())
 
@@ -89,7 +89,7 @@ class Notes:
         """
         if text in self._places:
             return self._tags[text, cited]
-        told = "; ".join(part for part in (text, source) if part)
+        told = parted(part for part in (text, source) if part)
         return escape(f" ({told})") if told else Markup()
 
 
@@ -113,9 +113,7 @@ class PageNotes:
         """
         groups = (
             f"{escape(origin[:1].upper() + origin[1:])}: "
-            + "; ".join(
-                [f"{escape(n.text)}{self.assumed.tag(n.note, n.source, cited=n.note in cited)}" for n in members]
-            )
+            + parted([f"{escape(n.text)}{self.assumed.tag(n.note, n.source, cited=n.note in cited)}" for n in members])
             for origin, members in groupby(numbers, key=lambda n: n.origin)
         )
         return Markup(". ".join(groups) + "." if numbers else "")  # noqa: S704 - each part is escaped above
@@ -156,7 +154,7 @@ def _left_out(view: ObjectView, alone: Collection[str]) -> list[str]:
     is said of this one alone, then all others in one text.
     """
     own = [text for text in view.skipped if text in alone]
-    others = "; ".join(text for text in view.skipped if text not in alone)
+    others = parted(text for text in view.skipped if text not in alone)
     return [*own, others] if others else own
 
 

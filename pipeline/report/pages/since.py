@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pipeline.records import Cause, CauseKind, FieldChange, InputChange, RunChanges, Verdict, VerdictChange
-from pipeline.report.language import _, moment, said
+from pipeline.report.language import _, moment, parted, said
 from pipeline.report.pages.views import ChangeView, Pointer, SinceView, TurnView
 from pipeline.report.text import clean, count, short, words
 from pipeline.report.units import Units
@@ -171,7 +171,7 @@ def _other(change: VerdictChange, objects: Mapping[str, Pointer]) -> ChangeView:
 def _fields(change: InputChange, units: Units) -> str:
     # What follows from the record is told only where nothing of the record itself changed.
     own = [field for field in change.fields if "." not in field.name]
-    return "; ".join(_field(field, units) for field in own or change.fields)
+    return parted(_field(field, units) for field in own or change.fields)
 
 
 def _field(change: FieldChange, units: Units) -> str:

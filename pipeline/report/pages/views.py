@@ -6,6 +6,7 @@ from itertools import groupby
 
 from pipeline import records
 from pipeline.records import Urgency
+from pipeline.report.language import parted
 from pipeline.report.pages.chances import ChanceView
 from pipeline.report.pages.judging import FragilityView
 from pipeline.report.pages.photo_views import PhotoView
@@ -236,7 +237,7 @@ class ObjectView:
         for effect, group in groupby(worth, key=lambda w: w.effect):
             told = [f"{w.what} ({w.now})" if w.now else w.what for w in group]
             parts.append(f"{', '.join(told)}: {effect}")
-        return "; ".join(parts)
+        return parted(parts)
 
     @property
     def unsettled(self) -> tuple[str, ...]:

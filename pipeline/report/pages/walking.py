@@ -7,7 +7,7 @@ from string import Formatter
 from pipeline.planning.errands import deciding
 from pipeline.records import Assessment, Recommendation
 from pipeline.report.by_hand import by_hand
-from pipeline.report.language import _, said
+from pipeline.report.language import _, parted, said
 from pipeline.report.pages.chances import name_of
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.views import ObjectView, PageView, State, SurveyView, TaskView
@@ -172,9 +172,11 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
     named = dict.fromkeys(name for _text, name, _form, _how in Formatter().parse(advice.sentence) if name)
     told, write = [], by_hand(units)
     for name in named:
-        if name in advice.parameters and name not in _FOLLOWS:
+        # The page has the moment too; whoever buys a clamp asks what it must hold.
+        beside = name == "moment" and "force" in advice.parameters
+        if name in advice.parameters and name not in _FOLLOWS and not beside:
             text = write(name, advice.parameters[name], advice.units.get(name, ""))
             told.append(
                 _("%(times)s times its weight") % {"times": text} if name == "times" else f"{words(clean(name))} {text}"
             )
-    return "; ".join(told)
+    return parted(told)
