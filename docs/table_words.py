@@ -18,6 +18,8 @@ TABLE_WORDS = {
     "fixings": "What wax, putty, pins, ties, clips, brackets and clamps hold, and which materials they harm.",
     "fragility": "Published medians and dispersions that stand beside the computed ones.",
     "friction": "Friction between object and surface (Table 3 of the paper, handbooks and judgement).",
+    "found_words": "Words by which people say what they found after an earthquake, and names of columns of such "
+    "lists, in the languages of the pages.",
     "generic_models": "The paper's Tables 1 and 2, and the model that answers each row.",
     "hangings": "Ways to hang on a wall: whether a work swings or may be lifted off, its hooks and its hangers.",
     "furniture": "What objects stand on or in, or hang from: frequency [Hz], damping [-], degrees off level, and size.",

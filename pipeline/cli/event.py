@@ -32,7 +32,8 @@ _LISTED = 10
 @click.option(
     "--report",
     type=click.Path(path_type=Path),
-    help="What people found: a CSV file, columns object and state (standing, moved, fallen, broken).",
+    help="What people found: a CSV file or a workbook, columns object and state (standing, moved 2 cm, fallen, "
+    "broken, or these in another language of the pages).  Without FILE: after the earthquake answered last.",
 )
 @click.option(
     "--watch",
@@ -76,6 +77,7 @@ def event(
     \b
     Example: kouros event grid.xml --at 37.77,-122.47
     Example: kouros event --pga 0.144 --pgv 18.9 --ln-sd 0.3
+    Example: kouros event --report found.xlsx
     Example: kouros event --drill
     Example: kouros event --watch drop
 
@@ -89,7 +91,7 @@ def event(
     from pipeline.operations.secrets import hider
     from pipeline.operations.workspace import open_workspace
     from pipeline.report.files.event_files import document_text
-    from pipeline.tools.event import answer_event, exercise
+    from pipeline.tools.event import answer_again, answer_event, exercise
 
     if watch is not None:
         others = (files, pga, pgv, ln_sd, report, drill, dry_run)
@@ -107,10 +109,17 @@ def event(
             if files or typed is not None:
                 raise click.UsageError("--drill has a shaking of its own: leave files, --pga and --pgv out")
             typed, quake = exercise(workspace)
-        done = answer_event(
-            workspace, files, at=place, typed=typed, report=report, drill=quake, seconds=seconds, dry_run=dry_run
-        )
-        if not (dry_run or done.again or drill):
+        alone = report is not None and not files and typed is None
+        if alone:
+            if place is not None:
+                raise click.UsageError("--at says where a message is read for: give its FILE too, or leave --at out")
+            done = answer_again(workspace, report=report, dry_run=dry_run)
+        else:
+            done = answer_event(
+                workspace, files, at=place, typed=typed, report=report, drill=quake, seconds=seconds, dry_run=dry_run
+            )
+        exercised = drill or (alone and done.document["event"]["scenario"])
+        if not (dry_run or done.again or exercised):
             tell_shaken(settings, done.sentence, done.document, hider(settings))
     if as_json:
         click.echo(document_text(done.document), nl=False)
@@ -185,7 +194,7 @@ def _typed(pga: float | None, pgv: float | None, ln_sd: float | None) -> "TypedS
 def _lines(done: "EventDone", *, dry: bool) -> list[str]:
     document = done.document
     shaking = document["shaking"]
-    lines = [done.sentence]
+    lines = [done.sentence] if done.taken is None else [done.taken.sentence, done.sentence]
     lines.append(
         f"Shaking at the museum: {shaking['pga_g']:.3f} g (ln sd {shaking['pga_ln_sd']:.2f}), "
         f"{shaking['pgv_cm_s']:.1f} cm/s (ln sd {shaking['pgv_ln_sd']:.2f}), from {shaking['from']}"

@@ -13,7 +13,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
-from pipeline.desk import looking, saying
+from pipeline.desk import looking, saying, shaken
 from pipeline.desk.accounts import Attempts, digest, signed_in
 from pipeline.desk.asking import Asked, DeskAnswer
 from pipeline.desk.errors import BodyTooLongError, NotThereError
@@ -63,6 +63,8 @@ _LOOKED: Mapping[str, Page] = {
     "/survey": looking.survey,
     "/errands": looking.errands,
     "/errand": looking.errand_page,
+    "/event": shaken.event_page,
+    "/event/gallery": shaken.gallery_page,
     "/house": looking.house,
     "/house/fields": looking.house_fields,
 }
@@ -72,6 +74,8 @@ _SAID: Mapping[str, Page] = {
     "/object/picture": saying.say_picture,
     "/house/rule": saying.say_rule,
     "/errand/say": saying.say_errand,
+    "/event/found": shaken.say_found,
+    "/event/again": shaken.say_again,
 }
 
 
@@ -166,10 +170,10 @@ class _Pages:
         context: dict[str, Any] = {
             "who": who, "token": form_token(seed), "htmx": HTMX, "here": request.url.path,
             "museum": site.workspace.settings.museum.name, "identity": site.serving.identity, "problem": "",
-            "saved": "", "run": None,
+            "saved": "", "run": None, "shaken": False,
         }  # fmt: skip
         if answer.template not in ("sign_in.html", "told.html"):
-            context["run"] = site.run
+            context |= {"run": site.run, "shaken": site.events.there}
         response = HTMLResponse(fill(env, f"desk/{answer.template}", context | dict(answer.context)), answer.status)
         if fresh:
             self._cookie(response, FORM_COOKIE, seed)

@@ -26,7 +26,7 @@ def say_decision(asked: Asked) -> DeskAnswer:
     """Write down a decision about an object."""
     form, number = asked.form, asked.form.get("number", "")
     try:
-        _signed(asked)
+        signed(asked)
         with writing(asked.site.workspace.settings):
             _seen(asked, number)
             decide(asked.site.workspace, _wish(asked, number, form))
@@ -76,7 +76,7 @@ def say_measured(asked: Asked) -> DeskAnswer:
     form, number = asked.form, asked.form.get("number", "")
     typed = {name.removeprefix("m."): text for name, text in form.items() if name.startswith("m.")}
     try:
-        _signed(asked)
+        signed(asked)
         with writing(asked.site.workspace.settings):
             facts = _seen(asked, number)
             enter(asked.site.workspace, facts.item, typed, asked.name, asked.site.run.units)
@@ -92,7 +92,7 @@ def say_picture(asked: Asked) -> DeskAnswer:
     """Keep a photograph of an object's mount."""
     number = asked.form.get("number", "")
     try:
-        _signed(asked)
+        signed(asked)
         if len(asked.upload) > 1e6 * asked.site.serving.upload_megabytes:
             raise DeskError(f"the photograph has more than {asked.site.serving.upload_megabytes:g} MB; make it smaller")
         if not asked.upload:
@@ -113,7 +113,7 @@ def say_rule(asked: Asked) -> DeskAnswer:
     """Add a house rule to the settings."""
     form = asked.form
     try:
-        _signed(asked)
+        signed(asked)
         rule = house_rule(form, asked.name, datetime.now(UTC).date(), asked.site.run.units)
         with writing(asked.site.workspace.settings):
             if form.get("version") != rules_version(asked.site.config):
@@ -130,7 +130,7 @@ def say_errand(asked: Asked) -> DeskAnswer:
     form, key = asked.form, asked.form.get("key", "")
     entry = errand_named(asked, key)
     try:
-        _signed(asked)
+        signed(asked)
         with writing(asked.site.workspace.settings):
             entry = errand_named(asked, key)
             if form.get("version") != entry.version:
@@ -166,7 +166,14 @@ def _tick(asked: Asked, key: str) -> None:
             decide(site.workspace, wish, dry_run=dry)
 
 
-def _signed(asked: Asked) -> None:
+def signed(asked: Asked) -> None:
+    """Refuse what nobody says.
+
+    Raises
+    ------
+    DeskError
+        Where the name is missing, or is none.
+    """
     if not asked.name:
         raise DeskError("write your name: it stands beside what you say")
     if len(asked.name) > WHO_LIMIT or not asked.name.isprintable():

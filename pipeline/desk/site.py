@@ -5,6 +5,7 @@ import time
 from pathlib import Path
 from threading import Lock
 
+from pipeline.desk.event_facts import EventDesk
 from pipeline.desk.object_facts import ObjectDesk, ObjectFacts
 from pipeline.desk.run_facts import RunFacts
 from pipeline.operations.workspace import Workspace, open_workspace
@@ -39,6 +40,7 @@ class DeskSite:
         self.workspace: Workspace = open_workspace(load_settings(config))
         self.serving = serving or self.workspace.settings.serve
         self.objects = ObjectDesk()
+        self.events = EventDesk(self.workspace)
         self._lock = Lock()
         self._looked = 0.0
         self._run: RunFacts | None = None
@@ -59,6 +61,7 @@ class DeskSite:
             changed = self.config.stat().st_mtime_ns
             if changed != self._changed:
                 self.workspace = Workspace(load_settings(self.config), self.workspace.engine)
+                self.events = EventDesk(self.workspace)
                 self._changed, self._run = changed, None
             now = time.monotonic()
             if self._run is None or now - self._looked > LOOK:

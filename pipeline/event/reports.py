@@ -14,26 +14,18 @@ than a few draws with a weight (adaptive importance sampling).
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
-from pipeline.errors import InputError
 from pipeline.event.answer import Draws, chances, moved_of, normals, placed
 from pipeline.event.capacities import KINDS, Capacities
 from pipeline.event.message import SiteShaking
 from pipeline.quantities import Array, G
 from pipeline.records import Harm
 from pipeline.records.fragility import HARM
-from pipeline.resources import small_text
-
-STATES = ("standing", "moved", "fallen", "broken")
-"""What may be found."""
 
 WRONG = 0.02
 """Chance that a report is wrong, of the object or of its state: judgement, from 0.005 to 0.05."""
@@ -43,45 +35,6 @@ FIRST, ROUNDS, WIDER = 4096, 2, 1.5
 
 FEW = 64.0
 """Draws that have to count at least in a round; where fewer do, the reports count for less in it, and fully at last."""
-
-
-def read_reports(file: Path, known: Collection[str]) -> dict[str, str]:
-    """Read reports from the galleries: a CSV file with the columns object and state.
-
-    Parameters
-    ----------
-    file : Path
-        Of UTF-8.
-    known : collection of str
-        Numbers of the objects on display.
-
-    Returns
-    -------
-    dict of str to str
-        By object number one of `STATES`; of two rows of one object the later holds.
-
-    Raises
-    ------
-    InputError
-        For a file that cannot be read, an object that is not there, and a state that is not known.
-    """
-    try:
-        rows = list(csv.DictReader(io.StringIO(small_text(file).removeprefix("\ufeff"))))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{file}: cannot be read ({error}); give a CSV file in UTF-8") from error
-    found = {}
-    for at, row in enumerate(rows, start=2):
-        if row.get("object") is None or row.get("state") is None:
-            raise InputError(f"{file}, row {at}: give the columns object and state")
-        name, words = row["object"].strip(), row["state"].lower().split()
-        if name not in known:
-            raise InputError(f"{file}, row {at}: object {name[:60]!r} is not on display in the newest run; correct it")
-        # "Moved 2 cm" is moved.
-        if not words or words[0] not in STATES:
-            wrong = f"state {row['state'][:40]!r} is not known"
-            raise InputError(f"{file}, row {at}: {wrong}; use one of {', '.join(STATES)}")
-        found[name] = words[0]
-    return found
 
 
 def conditioned(
@@ -94,7 +47,7 @@ def conditioned(
     capacities : Capacities
         Of all objects.
     found : mapping of int to str
-        By place of the object, one of `STATES`.
+        By place of the object, one of `pipeline.event.found.STATES`.
     shaking : SiteShaking
         As the messages have it.
     objects : int

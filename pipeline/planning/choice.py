@@ -8,18 +8,20 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from math import fsum
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import Bounds, LinearConstraint, linprog, milp
-from scipy.sparse import csr_array, vstack
 
 from pipeline.errors import InputError
 from pipeline.planning.bundles import Bundle, bundles
 from pipeline.planning.efforts import TRADES, EffortRow
 from pipeline.planning.errands import Errand
 from pipeline.quantities import Array
+
+# Read where a plan is made: they take half a second, and most of what reads this module makes none.
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 EXACT = 3_000
 """Errands and visits up to which the choice is searched through; of more the relaxed problem guides it."""
@@ -267,6 +269,8 @@ def _relaxed(work: ErrandWork, useful: Taken, taking: Array, most: Array) -> tup
     # In shares of what there is; what there is nothing of no useful node takes.
     shares = taking / np.where(most > 0.0, most, 1.0)[:, None]
     total, number = float(work.gains[useful].sum()), most.size
+    from scipy.optimize import linprog
+
     best, weights = np.inf, np.zeros(number)
     rows, above = [], []
     at = np.zeros(number)
@@ -304,8 +308,10 @@ def _largest(work: ErrandWork, values: Array) -> tuple[Taken, float]:
     return taken, float(np.maximum(held[work.levels[0]], 0.0).sum())
 
 
-def _needs(work: ErrandWork) -> csr_array:
+def _needs(work: ErrandWork) -> "csr_array":
     """Return the rows that say that nothing is done before what it needs: each times the choice is at most 0."""
+    from scipy.sparse import csr_array
+
     nodes = np.flatnonzero(np.array(work.parents) >= 0)
     rows = np.arange(nodes.size)
     ones = np.ones(nodes.size)
@@ -320,6 +326,9 @@ def _searched(
 
     reached : what some choice gains, for the scale
     """
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import csr_array, vstack
+
     needs, scale = _needs(work), np.maximum(most, 1.0)[:, None]
     rows = [needs, csr_array(taking / scale)]
     above = np.r_[np.zeros(needs.shape[0]), most / scale[:, 0]]

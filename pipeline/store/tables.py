@@ -38,6 +38,7 @@ __all__ = [
     "ACCOUNT",
     "DECISION",
     "ERRAND_WORD",
+    "EVENT_REPORT",
     "IMPORT_BATCH",
     "ITEM",
     "METADATA",
@@ -375,3 +376,19 @@ PICTURE = Table(
     sqlite_autoincrement=True,
 )
 """Photographs of mounts, as JPEG that Kouros itself wrote."""
+
+EVENT_REPORT = Table(
+    "event_report",
+    METADATA,
+    Column("id", Integer(), primary_key=True),
+    Column("event", WordsColumn(), nullable=False, index=True),
+    Column("object_number", WordsColumn(), nullable=False),
+    Column("state", WordsColumn(), nullable=False),
+    Column("moved_m", Double()),
+    Column("note", WordsColumn(), nullable=False),
+    Column("who", WordsColumn(), nullable=False),
+    Column("recorded", WordsColumn(), nullable=False),
+    seal_column(),
+    sqlite_autoincrement=True,
+)
+"""What people found of objects after an earthquake, which is known by the name of its folder."""

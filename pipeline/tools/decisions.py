@@ -97,7 +97,7 @@ def _put(workspace: Workspace, wish: Wish) -> Decision:
 
 def _stated(wish: Wish) -> Decision:
     """Check what every decision has: who, when, why."""
-    who = (wish.who or os.environ.get(WHO_VARIABLE) or _account()).strip()
+    who = (wish.who or person_here()).strip()
     if not who:
         raise UsageError(f"who decides is not known: give --who NAME, or set {WHO_VARIABLE}")
     why = wish.why.strip()
@@ -129,6 +129,11 @@ def _stated(wish: Wish) -> Decision:
         level=wish.level,
         until="" if until is None else until.isoformat(),
     )
+
+
+def person_here() -> str:
+    """Return who sits at this machine, as far as it says; "" where nobody knows."""
+    return os.environ.get(WHO_VARIABLE) or _account()
 
 
 def _account() -> str:

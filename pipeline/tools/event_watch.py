@@ -21,7 +21,8 @@ from pipeline.motions.errors import MotionError
 from pipeline.operations.workspace import LockedError, UsageError, open_workspace
 from pipeline.resources import replacing
 from pipeline.settings import Settings
-from pipeline.tools.event import EVENTS, EventDone, answer_event
+from pipeline.tools.event import EventDone, answer_event
+from pipeline.tools.event_folders import EVENTS
 
 SETTLED = 2.0
 """Seconds for which a file has to stay as it is before it is read: judgement."""

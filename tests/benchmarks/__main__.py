@@ -1,12 +1,25 @@
 """Kouros beside its peers, beside C, and by itself: `python -m tests.benchmarks [peers] [native] [models] [charts]
-[auto] [night] [starts]`.
+[auto] [night] [starts] [event]`.
 
 Machines are noisy: read the ratios of one run, not the times.
 """
 
 import sys
 
-from tests.benchmarks import auto, charts, general, models, multibody, native, night, opensees, scale, spectra, starts
+from tests.benchmarks import (
+    auto,
+    charts,
+    event,
+    general,
+    models,
+    multibody,
+    native,
+    night,
+    opensees,
+    scale,
+    spectra,
+    starts,
+)
 from tests.benchmarks.common import FAR, HEADING, OBJECTS, marked
 
 
@@ -40,6 +53,7 @@ PARTS = {
     "night": night.night,
     "scale": scale.scale,
     "starts": starts.starts,
+    "event": event.answers,
 }
 
 

@@ -20,7 +20,8 @@ from pipeline.report.files.event_files import EVENT_COLUMNS
 from pipeline.resources import resource
 from pipeline.settings import load_settings
 from pipeline.store.codec import StoreError
-from pipeline.tools.event import EVENTS, EventDone, TypedShaking, answer_event
+from pipeline.tools.event import EventDone, TypedShaking, answer_event
+from pipeline.tools.event_folders import EVENTS
 from pipeline.tools.synthetic import synthesise
 from tests.cli.test_dry_runs import digest, say
 from tests.event.messages import DATA, NOW, PARK, alert
@@ -212,11 +213,49 @@ def test_reports_from_the_galleries_condition_the_rest_and_stay(museum: Path, tm
     one = next(one for one in second.document["objects"] if one["object_number"] == "1")
     assert (one["reported"], one["states"].get("falls", 0.0)) == ("standing", 0.0)
     assert "found: standing" in (second.folder / "objects.csv").read_text("utf-8")
+    pages = [(done.folder / "index.html").read_text("utf-8") for done in (first, second)]
+    assert ["Nobody has looked yet" in page for page in pages] == [True, False]
+    assert "What was found of 1 object is counted" in pages[1]
     # What was told holds for whatever comes later of the same earthquake.
     third = ask(museum, typed=TypedShaking(0.4))
     assert [one["reported"] for one in third.document["objects"]].count("standing") == 1
     with pytest.raises(InputError, match="give a CSV file"):
         ask(museum, typed=TypedShaking(0.3), report=tmp_path / "absent.csv")
+
+
+def test_reports_alone_answer_the_last_earthquake_anew_as_its_message_would(museum: Path, tmp_path: Path) -> None:
+    """Without its file, and with what the models found: the same answer as from the file with the reports."""
+    first = ask(museum, MAP, seconds=5.0)
+    assert first.document["event"]["modelled"] > 0
+    found = tmp_path / "found.csv"
+    found.write_text("object,state\n1,in piedi\n2,moved 2 cm\n", encoding="utf-8")
+    before = digest(museum / EVENTS)
+    code, out, message = say(museum, "event", "--report", str(found), "--dry-run")
+    assert (code, "2 reports were taken." in out) == (0, True), message
+    assert digest(museum / EVENTS) == before
+    code, out, message = say(museum, "event", "--report", str(found))
+    assert (code, "2 reports were taken." in out) == (0, True), message
+    alone = json.loads((shown(first) / "answer.json").read_text("utf-8"))
+    assert alone["event"]["modelled"] == first.document["event"]["modelled"]
+    assert {one["object_number"]: one["reported"] for one in alone["objects"]} == {
+        "1": "standing", "2": "moved", "3": ""
+    }  # fmt: skip
+    # Told again it changes nothing; and from the message, as its curves have it, the shaking is nearly the same.
+    code, out, message = say(museum, "event", "--report", str(found))
+    assert (code, "2 reports were taken, 2 of which were known." in out) == (0, True), message
+    curves = ask(museum, MAP)
+    plain = ask(museum, MAP).document["shaking"]
+    assert curves.document["shaking"] == plain
+    assert alone["shaking"]["pga_g"] == pytest.approx(plain["pga_g"], rel=0.2)
+    code, _, message = say(museum, "event", "--report", str(found), "--at", "37.77,-122.47")
+    assert (code, "give its FILE too" in message) == (2, True)
+
+
+def test_reports_alone_need_an_earthquake(museum: Path, tmp_path: Path) -> None:
+    found = tmp_path / "found.csv"
+    found.write_text("object,state\n1,standing\n", encoding="utf-8")
+    code, _, message = say(museum, "event", "--report", str(found))
+    assert (code, "no earthquake was answered yet" in message) == (2, True)
 
 
 def test_a_drill_is_said_to_be_one_and_is_timed(museum: Path) -> None:

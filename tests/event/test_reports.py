@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
-from pathlib import Path
 
 import numpy as np
-import pytest
 
-from pipeline.errors import InputError
 from pipeline.event.answer import answered, drawn
 from pipeline.event.capacities import KINDS, Capacities
 from pipeline.event.message import NINETY, SiteShaking
-from pipeline.event.reports import conditioned, read_reports
+from pipeline.event.reports import conditioned
 from pipeline.quantities import G
 from pipeline.records import Sampling
 from tests.event.test_answer import FALLS, assessment, stock
@@ -82,17 +78,3 @@ def test_without_reports_nothing_changes() -> None:
     draws, after = conditioned(able, {}, told)
     assert after == told
     assert np.array_equal(draws.ln_pga, drawn(told).ln_pga)
-
-
-def test_reports_are_read_and_refused_by_row(tmp_path: Path) -> None:
-    file = tmp_path / "found.csv"
-    file.write_text("object,state\n1,Fallen\n2,moved 2 cm\n1,standing\n", encoding="utf-8")
-    assert read_reports(file, {"1", "2"}) == {"1": "standing", "2": "moved"}
-    for text, message in (
-        ("object,state\n9,fallen\n", "row 2: object '9' is not on display"),
-        ("object,state\n1,fallen\n2,asleep\n", "row 3: state 'asleep' is not known; use one of standing"),
-        ("number;state\n1;fallen\n", "give the columns object and state"),
-    ):
-        file.write_text(text, encoding="utf-8")
-        with pytest.raises(InputError, match=re.escape(message)):
-            read_reports(file, {"1", "2"})

@@ -16,7 +16,7 @@ import pytest
 from pipeline.operations.workspace import LockedError
 from pipeline.resources import resource
 from pipeline.settings import load_settings
-from pipeline.tools.event import EVENTS
+from pipeline.tools.event_folders import EVENTS
 from pipeline.tools.event_watch import PATIENCE, SETTLED, DropFolder
 from tests.cli.test_dry_runs import digest, say
 from tests.event.messages import DATA, PARK, alert

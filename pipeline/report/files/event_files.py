@@ -19,7 +19,7 @@ ANSWER, TABLE, PLACES, PAGE = "answer.json", "objects.csv", "event.geojson", "in
 """The files of an answer besides the sheets."""
 
 BRIEF = "event.json"
-"""The answer without galleries and objects, and what was found of these: what a later answer asks of an earlier one."""
+"""The answer without galleries and objects, what was found of these, and what it answers: to answer it anew."""
 
 EVENT_COLUMNS = (
     "rank", "object_number", "title", "gallery", "case", "floor", "told", "probability", "band",
@@ -113,6 +113,7 @@ def write_event(
     event: Mapping[str, Any],
     head: PageHead,
     language: Language,
+    question: Mapping[str, Any],
 ) -> None:
     """Write everything of an answer into a folder that is there.
 
@@ -132,6 +133,8 @@ def write_event(
         Of the run that the answer rests on.
     language : Language
         The reader's.
+    question : mapping
+        All that is needed to answer the same anew, JSON-ready.
 
     Raises
     ------
@@ -144,7 +147,10 @@ def write_event(
     pages[ANSWER] = document_text(document)
     # By their own numbers, as whoever looks for one has it.
     reported = {one.number: one.reported for one in answer.objects if one.reported}
-    brief = {name: document[name] for name in ("event", "shaking", "expected")} | {"reported": reported}
+    brief = {name: document[name] for name in ("event", "shaking", "expected")} | {
+        "reported": reported,
+        "question": question,
+    }
     pages[BRIEF] = document_text(brief)
     pages[PLACES] = json.dumps(_places(document, quake, site), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
     for name, text in pages.items():

@@ -65,6 +65,7 @@ class EventView:
     facts: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
     unknown: str
+    looked: str
     galleries: tuple[EventGallery, ...]
     safe: tuple[EventObject, ...]
     first: tuple[EventObject, ...]
@@ -149,12 +150,23 @@ def event_view(
             "Of {count} objects nothing is known: go and see.",
             unknown,
         ).format(count=count(unknown)),
+        looked=_looked(sum(bool(one.reported) for one in answer.objects)),
         galleries=tuple(_gallery(one) for one in answer.galleries),
         safe=_listed(safe),
         first=_listed(shaken),
         aftershock=_listed(weaker),
         rests=_rests(*ran),
     )
+
+
+def _looked(number: int) -> str:
+    if not number:
+        return ""
+    return ngettext(
+        "What was found of {count} object is counted; of the others these are probabilities.",
+        "What was found of {count} objects is counted; of the others these are probabilities.",
+        number,
+    ).format(count=count(number))
 
 
 def _rests(number: int, under: str) -> str:
