@@ -13,6 +13,7 @@ from pipeline.collection.sealing import damaged_rows
 from pipeline.store.tables import (
     DECISION,
     ERRAND_WORD,
+    EVENT_REPORT,
     IMPORT_BATCH,
     METADATA,
     PAGE,
@@ -38,6 +39,7 @@ _REMEDIES = {
     IMPORT_BATCH.name: _BACKUP,
     SUPPLEMENT.name: _BACKUP,
     ERRAND_WORD.name: _BACKUP,
+    EVENT_REPORT.name: _BACKUP,
     PICTURE.name: _BACKUP,
     READING.name: _IMPORT,
     SOURCE_STATE.name: _NIGHT,

@@ -27,6 +27,7 @@ from pipeline.report.errors import ReportWarning
 from pipeline.report.files.manifest import MANIFEST, PARTS
 from pipeline.settings import KEPT, load_settings, template
 from pipeline.store.decisions import add_decision
+from pipeline.store.tables import METADATA
 from pipeline.store.verifying import tables, verify_table
 from pipeline.tools.deep_check import examine
 from pipeline.tools.synthetic import synthesise
@@ -235,6 +236,7 @@ def test_another_value_in_any_column_is_found(museum: Path, tmp_path: Path) -> N
     """Of every table one row, value by value: also where SQLite itself has nothing to complain of."""
     shutil.copy(museum / DATABASE, tmp_path / DATABASE)
     engine = open_database(tmp_path / DATABASE)
+    assert {table.name for table in METADATA.tables.values() if "seal" in table.c} <= set(tables())
     missed: list[str] = []
     tried: Counter[str] = Counter()
     with closing(sqlite3.connect(tmp_path / DATABASE, isolation_level=None)) as connection:
