@@ -65,7 +65,7 @@ def test_a_folder_of_files_is_grouped_and_nothing_stops_the_rest(tmp_path: Path)
         shutil.copy(resource("site_motions", "demo", name), below)
     found = read_candidates([folder], 2.0)
     assert {one.record.name: len(one.record.files) for one in found.candidates} == {
-        "1336": 3,  # Meloland's channels have numbers of their own, and its files say no time
+        "1336 1979-10-15 23:17": 3,  # Imperial Valley at Meloland: its channels have numbers of their own
         "4225..HN 1989-10-18 00:04": 3,
         "4225..HN 1989-10-18 00:04 (2)": 3,
         "CI.CLC..HN 2019-07-06 03:19": 3,
@@ -86,7 +86,7 @@ def test_a_folder_of_files_is_grouped_and_nothing_stops_the_rest(tmp_path: Path)
 def test_the_suite_has_the_mean_and_its_spectra_are_those_of_every_direction(tmp_path: Path) -> None:
     folder = unpacked(tmp_path / "pool", SHAFTER, MELOLAND, COALINGA, REDWOOD, REDWOOD_RAW, WAIPAWA)
     pool = {one.record.name: one for one in read_candidates([folder], 1.0).candidates}
-    names = ["111..HN 1989-10-18 00:04", "ce36456p_CE36456.V2", "1336"]
+    names = ["111..HN 1989-10-18 00:04", "ce36456p_CE36456.V2", "1336 1979-10-15 23:17"]
     meant = [pool[name].motion for name in names]
     periods = np.geomspace(0.1, 1.0, 40)
     level = [np.exp(np.log(psa(m, periods, 0.05, "rotd50")).mean()) for m in meant]

@@ -45,7 +45,6 @@ CALLS = {"eval", "exec", "compile", "__import__", "read_pickle", "to_pickle", "s
 KNOWN = {
     ("execute/processes.py", "pickle"): "between processes of our own, through pipes, never in a file",
     ("collection/guessing/database.py", "compile"): "of a SELECT that is proposed, to text, by SQLAlchemy",
-    ("collection/inventory/writing.py", "verify"): "of records against their digests, not of certificates",
 }
 """What looks like it and is not, and why."""
 
