@@ -57,3 +57,9 @@ def address(path: str, **query: str) -> str:
     """Return an address of the desk; it never leads elsewhere."""
     told = {name.rstrip("_"): value for name, value in query.items() if value}
     return path + (f"?{urlencode(told)}" if told else "")
+
+
+def page_number(query: Mapping[str, str]) -> int:
+    """Return which page of a list is asked for; the first where that is no number."""
+    text = query.get("page", "1")
+    return int(text) if text.isdecimal() and len(text) < 7 and int(text) > 0 else 1

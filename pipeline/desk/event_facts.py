@@ -37,6 +37,8 @@ class EventFacts:
         All that was found, by the museum's own number.
     open : int
         Of how many objects the answer does not count yet what was found.
+    others : tuple of KeptEvent
+        Other earthquakes, the one answered last first.
     """
 
     event: KeptEvent
@@ -45,6 +47,7 @@ class EventFacts:
     numbers: Mapping[str, str]
     reports: Mapping[str, tuple[EventReport, ...]]
     open: int
+    others: tuple[KeptEvent, ...]
 
     def found(self, shown: str) -> tuple[EventReport, ...]:
         """Return what was found of an object, by the number that is shown."""
@@ -73,11 +76,6 @@ class EventDesk:
         """Whether an earthquake was answered."""
         return self._root.is_dir() and any(one.is_dir() for one in self._root.iterdir())
 
-    @property
-    def every(self) -> list[KeptEvent]:
-        """All of them, the one answered last first."""
-        return kept_events(self._root)
-
     def facts(self, name: str = "") -> EventFacts:
         """Return an earthquake by the name of its folder; "" for the one that was answered last.
 
@@ -86,7 +84,8 @@ class EventDesk:
         NotThereError
             Where there is none.
         """
-        event = next((one for one in self.every if name in ("", one.name)), None)
+        every = kept_events(self._root)
+        event = next((one for one in every if name in ("", one.name)), None)
         if event is None:
             raise NotThereError("no such earthquake was answered yet: `kouros event` answers one")
         with self._lock:
@@ -96,7 +95,8 @@ class EventDesk:
         counted = event.brief.get("reported", {})
         states = found_states(reports, known)
         waiting = sum(counted.get(number) != state for number, state in states.items())
-        return EventFacts(event, document, galleries, {clean(one): one for one in known}, reports, waiting)
+        others = tuple(one for one in every if one.name != event.name)
+        return EventFacts(event, document, galleries, {clean(one): one for one in known}, reports, waiting, others)
 
     def _on_display(self) -> dict[str, int]:
         run = (whole_runs(self._workspace.engine) or ("",))[0]

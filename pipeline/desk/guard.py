@@ -1,9 +1,7 @@
 """What stands before every page: which host was asked for, who asks, how much is sent, and what a browser may do."""
 
-import getpass
 import hashlib
 import hmac
-import os
 import secrets
 from collections.abc import Awaitable, Callable, MutableMapping
 from dataclasses import dataclass
@@ -18,7 +16,7 @@ from pipeline.collection.database import Database
 from pipeline.desk.accounts import of_token
 from pipeline.desk.errors import BodyTooLongError
 from pipeline.settings.serve import LOCAL, ServeSettings
-from pipeline.tools.decisions import WHO_LIMIT, WHO_VARIABLE
+from pipeline.tools.decisions import WHO_LIMIT, person_here
 
 SESSION_COOKIE, FORM_COOKIE = "kouros_session", "kouros_form"
 
@@ -184,7 +182,7 @@ def person(request: Request, settings: ServeSettings, engine: Database) -> Perso
         given = request.headers.getlist(settings.header)
         name = _text(given[0]) if len(given) == 1 else ""
         return Person(name, name in settings.editors, True) if name else None
-    return Person(os.environ.get(WHO_VARIABLE) or _account(), True, False)
+    return Person(person_here(), True, False)
 
 
 def _text(header: str) -> str:
@@ -194,13 +192,6 @@ def _text(header: str) -> str:
     except UnicodeError:
         name = header.strip()
     return name if name.isprintable() and len(name) <= WHO_LIMIT else ""
-
-
-def _account() -> str:
-    try:
-        return getpass.getuser()
-    except (OSError, KeyError):
-        return ""
 
 
 def form_seed(request: Request, who: Person | None) -> tuple[str, bool]:

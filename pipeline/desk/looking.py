@@ -11,7 +11,7 @@ from pipeline.analysis.house.questions import VOCABULARIES
 from pipeline.analysis.house.rule import QUANTITIES, HouseRule, Span
 from pipeline.analysis.survey import field_asked, measurables
 from pipeline.collection.inventory import items_named
-from pipeline.desk.asking import Asked, DeskAnswer
+from pipeline.desk.asking import Asked, DeskAnswer, page_number
 from pipeline.desk.entering import labels, rules_version
 from pipeline.desk.errands import ErrandEntry, entries
 from pipeline.desk.errors import NotThereError
@@ -59,7 +59,7 @@ def search(asked: Asked) -> DeskAnswer:
     """Show the objects that a search finds, the most urgent ones where nothing is asked for."""
     run, query = asked.site.run, asked.query
     words, gallery, state = query.get("q", "")[:200], query.get("gallery", ""), query.get("state", "")
-    page = _whole(query.get("page", "1"))
+    page = page_number(query)
     narrowed = bool(words.strip() or gallery or state)
     hits = run.found(words, gallery, state) if narrowed else iter(run.urgent)
     found = list(islice(hits, SHOWN * (page - 1), SHOWN * page + 1))
@@ -235,7 +235,7 @@ def errands(asked: Asked) -> DeskAnswer:
         if gallery in ("", e.errand.gallery) and whose in ("", e.whose) and state in ("", e.state)
         and (e.chosen or e.words)
     ]  # fmt: skip
-    page = _whole(query.get("page", "1"))
+    page = page_number(query)
     shown = chosen[_ERRANDS_SHOWN * (page - 1) : _ERRANDS_SHOWN * page]
     context = {
         "entries": shown, "page": page, "more": len(chosen) > _ERRANDS_SHOWN * page, "count": len(chosen),
@@ -343,7 +343,3 @@ def galleries(asked: Asked) -> DeskAnswer:
     run = asked.site.run
     rows = [(name, run.galleries[name], run.counts[name]) for name in run.order]
     return DeskAnswer("galleries.html", {"rows": rows, "states_of": STATES, "State": State})
-
-
-def _whole(text: str) -> int:
-    return int(text) if text.isdecimal() and len(text) < 7 and int(text) > 0 else 1

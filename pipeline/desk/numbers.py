@@ -43,13 +43,12 @@ def read_number(text: str, unit: str, units: Units) -> tuple[float, str]:
         cell = of_hand(text, mine if unit in ("m", "kg") else unit)
     except InputError as problem:
         raise InputError(f"{problem}: write one number, such as 8 1/2 or 0.3") from None
-    about = "about " if cell.about else ""
-    if cell.named or unit in ("m", "kg"):
-        return cell.value, about + cell.written
-    # Divided and rounded, so that 30 of a hundredth are 0.3.
-    return float(
-        f"{cell.value * _per(unit, units):.12g}"
-    ), f"{about}{cell.written.removesuffix(unit).strip()} {mine}".strip()
+    value, written = cell.value, cell.written
+    if not cell.named and unit not in ("m", "kg"):
+        # Rounded, so that 30 of a hundredth are 0.3.
+        value = float(f"{value * _per(unit, units):.12g}")
+        written = f"{written.removesuffix(unit).strip()} {mine}".strip()
+    return value, f"about {written}" if cell.about else written
 
 
 def shown_number(value: float, unit: str, units: Units) -> str:

@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from threading import Lock
 from typing import Any
 
-from pipeline.desk.asking import Asked, DeskAnswer, address
+from pipeline.desk.asking import Asked, DeskAnswer, address, page_number
 from pipeline.desk.errors import DeskError, NotThereError, StaleError
 from pipeline.desk.event_facts import EventFacts
 from pipeline.desk.saying import signed
@@ -155,10 +155,7 @@ def _event_context(asked: Asked, query: Mapping[str, str], *, problem: str = "")
     for gallery in facts.document["galleries"]:
         looked = sum(bool(facts.found(one.number)) for one in facts.galleries.get(gallery["gallery"], ()))
         rows.append((gallery, looked, f"{gallery['fallen']:.1f}"))
-    every = asked.site.events.every
-    return _shared(asked, facts, query, problem) | {"galleries": rows, "earlier": [
-        one for one in every if one.name != facts.event.name
-    ]}  # fmt: skip
+    return _shared(asked, facts, query, problem) | {"galleries": rows, "earlier": facts.others}
 
 
 def _gallery_context(
@@ -170,8 +167,7 @@ def _gallery_context(
         raise NotThereError(f"there is no gallery {name[:60]!r} in this answer")
     # What is to be made safe comes first, as on its sheet.
     walk = sorted(facts.galleries[name], key=lambda one: not one.make_safe)
-    text = query.get("page", "1")
-    page = int(text) if text.isdecimal() and len(text) < 7 and int(text) > 0 else 1
+    page = page_number(query)
     units = asked.site.run.units
     shown = [_object(one, at, facts, units) for at, one in enumerate(walk)][SHOWN * (page - 1) : SHOWN * page]
     return _shared(asked, facts, query, problem) | {

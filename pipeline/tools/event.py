@@ -181,11 +181,7 @@ def answer_event(
     source = hashlib.sha256("\n".join((told.digest, repr(typed), repr(site))).encode()).hexdigest()
     question = EventQuestion(quake, site, rank, shaking, source)
     name = event_folder(workspace.settings.path(EVENTS), quake, clock)
-    known, taken = known_objects(workspace, run.pages), None
-    if report is None:
-        found = found_states(event_reports(workspace.engine, name), known)
-    else:
-        taken, found = take_reports(workspace, name, report, known, dry_run=dry_run)
+    known, taken, found = run.found(name, report, dry_run=dry_run)
     first = run.root / name / _version(question, run.head, found)
     folder = first.with_name(f"{first.name}-{MODELLED}") if seconds > 0.0 else first
     there = _there(folder, rank, dry_run=dry_run)
@@ -237,11 +233,7 @@ def answer_again(
     except (KeyError, TypeError, ValueError) as problem:
         raise StoreError(f"{kept.folder}: an earlier answer that is damaged; give its message again") from problem
     run = _Run(workspace)
-    known, taken = known_objects(workspace, run.pages), None
-    if report is None:
-        found = found_states(event_reports(workspace.engine, kept.name), known)
-    else:
-        taken, found = take_reports(workspace, kept.name, report, known, dry_run=dry_run)
+    known, taken, found = run.found(kept.name, report, dry_run=dry_run)
     ran = _kept_chances(kept.folder / CHANCES) if kept.brief["event"].get("run_id") == run.head.run_id else None
     folder = run.root / kept.name / _version(question, run.head, found)
     folder = folder if ran is None else folder.with_name(f"{folder.name}-{MODELLED}")
@@ -261,6 +253,15 @@ class _Run:
         self.workspace = workspace
         self.head, self.pages = load_head(workspace.engine, _newest(workspace))
         self.root = workspace.settings.path(EVENTS)
+
+    def found(
+        self, event: str, report: Path | None, *, dry_run: bool
+    ) -> tuple[dict[str, int], ReportsTaken | None, dict[str, str]]:
+        """Return the places of objects by number, what was taken of a file of reports, and all that is known by now."""
+        known = known_objects(self.workspace, self.pages)
+        if report is None:
+            return known, None, found_states(event_reports(self.workspace.engine, event), known)
+        return known, *take_reports(self.workspace, event, report, known, dry_run=dry_run)
 
 
 def _there(folder: Path, rank: tuple[int, float], *, dry_run: bool, replacing: bool = False) -> EventDone | None:

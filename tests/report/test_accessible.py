@@ -25,8 +25,13 @@ KINDS = ("index", "news", "gallery-101", "salon", "not-on-display", "motion", "m
 
 
 def violations(browser: Chrome, page: Path) -> list[str]:
-    """Return what axe finds: the rule and the element, one line each."""
+    """Return what axe finds in a page of a report."""
     browser.get(page.as_uri())
+    return violations_here(browser)
+
+
+def violations_here(browser: Chrome) -> list[str]:
+    """Return what axe finds in the page that is shown: the rule and the element, one line each."""
     # The pages' own policy lets no other script run in them; the driver puts it in past that policy.
     browser.execute_script(AXE.read_text(encoding="utf-8"))
     found = browser.execute_async_script(

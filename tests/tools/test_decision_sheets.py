@@ -19,7 +19,7 @@ from pipeline.store.decisions import read_decisions
 from pipeline.tools.inbox import InboxFile, take_inbox
 from tests.museum import edit, kouros
 
-from .surveyed import OBJECTS, copied, fill, inventory, museum_with_survey, write_rows
+from .surveyed import OBJECTS, fill, inventory, write_rows
 
 pytestmark = pytest.mark.slow_file
 
@@ -52,18 +52,6 @@ REFUSED: list[tuple[dict[str, Any], str, str]] = [
     ({"decision": "withdraw", "what": "77"}, "what", "77"),
 ]
 """What differs from a good row, the column that is marked, and words of the reason."""
-
-
-@pytest.fixture(scope="module")
-def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("survey") / "museum"
-    museum_with_survey(folder)
-    return folder
-
-
-@pytest.fixture
-def museum(surveyed: Path, tmp_path: Path) -> Path:
-    return copied(surveyed, tmp_path)
 
 
 def decided(museum: Path) -> list[tuple[str, DecisionKind, str, str, str]]:

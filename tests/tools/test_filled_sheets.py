@@ -14,7 +14,7 @@ import pytest
 
 from tests.museum import kouros
 
-from .surveyed import OBJECTS, SHEET, copied, fill, inventory, museum_with_survey, row_of
+from .surveyed import OBJECTS, SHEET, fill, inventory, row_of
 
 pytestmark = pytest.mark.slow_file
 
@@ -60,18 +60,6 @@ REFUSED: list[tuple[Any, str]] = [
     ("#VALUE!", "error"),
 ]
 """Cells that are no such number, and words of the reason."""
-
-
-@pytest.fixture(scope="module")
-def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("survey") / "museum"
-    museum_with_survey(folder)
-    return folder
-
-
-@pytest.fixture
-def museum(surveyed: Path, tmp_path: Path) -> Path:
-    return copied(surveyed, tmp_path)
 
 
 def taken_up(museum: Path, name: str = "s.xlsx", *more: str) -> dict[str, Any]:

@@ -124,14 +124,15 @@ def draw_text(pdf: Any, at: tuple[float, float], text: str, font: str, size: flo
     share : float
         Which part of its width lies left of that point: 0.0, 0.5 for one that is centred, or 1.0.
     """
+    from reportlab.pdfbase.pdfmetrics import stringWidth
+
     line = shown_letters(text)
     if _TURNED.search(line):
         from bidi import get_display
 
         line = str(get_display(line))
-    x, y = at
-    x -= share * width_of(line, font, size) if share else 0.0
+    x, y = at[0] - share * width_of(line, font, size), at[1]
     for piece, name in _runs(line, font):
         pdf.setFont(name, size)
         pdf.drawString(x, y, piece)
-        x += width_of(piece, font, size)
+        x += stringWidth(piece, name, size)

@@ -59,7 +59,7 @@ class Notes:
         key = tuple(texts)
         if key not in self._cited:
             parts = [self._run(run) for run in self._runs(key)]
-            self._cited[key] = Markup(parted(parts))  # noqa: S704 - each part is escaped in _run
+            self._cited[key] = escape(_("; ")).join(parts)
         return self._cited[key]
 
     def _runs(self, texts: Sequence[str]) -> list[list[str]]:
@@ -112,11 +112,13 @@ class PageNotes:
         cited : the notes to which links stand beside
         """
         groups = (
-            f"{escape(origin[:1].upper() + origin[1:])}: "
-            + parted([f"{escape(n.text)}{self.assumed.tag(n.note, n.source, cited=n.note in cited)}" for n in members])
+            escape(f"{origin[:1].upper()}{origin[1:]}: ")
+            + escape(_("; ")).join(
+                escape(n.text) + self.assumed.tag(n.note, n.source, cited=n.note in cited) for n in members
+            )
             for origin, members in groupby(numbers, key=lambda n: n.origin)
         )
-        return Markup(". ".join(groups) + "." if numbers else "")  # noqa: S704 - each part is escaped above
+        return Markup(". ").join(groups) + "." if numbers else Markup()
 
     def left_out(self, view: ObjectView) -> Markup:
         """Return the models that were not run for an object in one line, with the reasons or links to them."""
