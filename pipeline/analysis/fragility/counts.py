@@ -14,7 +14,7 @@ McCullagh, P. and Nelder, J. A. (1989). Generalized linear models. 2nd ed. Chapm
 """
 
 from dataclasses import dataclass
-from functools import reduce
+from functools import cached_property, reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +56,8 @@ class CountFit:
     deviance: Array
     degrees: NDArray[np.intp]
 
-    @property
+    # Asked for by each object on its own.
+    @cached_property
     def goodness(self) -> Array:
         """The probability of a deviance as large by chance where the curve is right, (m,); NaN without freedom."""
         from scipy.special import chdtrc
@@ -90,23 +91,17 @@ def fit_counts(intensity: Array, taken: Array, failed: Array, least: float = 0.0
     b = np.full(k.shape[1], np.clip(2.0, low, high))
     a = -b * (_sum(n * x) / _sum(n))
     found = _log_likelihood(a + b * x, n, k)
-    going = np.ones(a.shape, dtype=bool)
+    # What is settled stays: nobody's digits hang on how long others take, and nobody waits for them.
+    going = np.arange(a.size)
     for _ in range(ROUNDS):
-        step_a, step_b = _step(a, b, x, n, k, (low, high))
-        # What is settled stays: nobody's digits hang on how long others take.
-        size = going.astype(float)
-        for _half in range(HALVINGS):
-            next_a, next_b = a + size * step_a, np.clip(b + size * step_b, low, high)
-            better = _log_likelihood(next_a + next_b * x, n, k)
-            worse = better < found
-            if not worse.any():
-                break
-            size[worse] *= 0.5
-        kept = going & (better >= found)
-        gain = np.where(kept, better - found, 0.0)
-        a, b, found = np.where(kept, next_a, a), np.where(kept, next_b, b), np.where(kept, better, found)
-        going = gain >= SETTLED
-        if not going.any():
+        ours = a[going], b[going], x, n[:, going], k[:, going]
+        next_a, next_b, better = _stepped(*ours, found[going], (low, high))
+        gain = better - found[going]
+        kept = gain >= 0.0
+        moved = going[kept]
+        a[moved], b[moved], found[moved] = next_a[kept], next_b[kept], better[kept]
+        going = going[gain >= SETTLED]
+        if going.size == 0:
             break
     error, dispersion_error = _errors(a, b, x, n, k, (low, high))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -147,6 +142,22 @@ def _slopes(z: Array, n: Array, k: Array) -> tuple[Array, Array]:
     density = -0.5 * z * z - LOG_ROOT
     failing, standing = np.exp(density - log_ndtr(z)), np.exp(density - log_ndtr(-z))
     return k * failing - (n - k) * standing, n * failing * standing
+
+
+def _stepped(
+    a: Array, b: Array, x: Array, n: Array, k: Array, found: Array, ends: tuple[float, float]
+) -> tuple[Array, Array, Array]:
+    """Return the curves a step further, halved where it loses, and their ln likelihoods."""
+    step_a, step_b = _step(a, b, x, n, k, ends)
+    size = np.ones(a.shape)
+    for _half in range(HALVINGS):
+        next_a, next_b = a + size * step_a, np.clip(b + size * step_b, *ends)
+        better = _log_likelihood(next_a + next_b * x, n, k)
+        worse = better < found
+        if not worse.any():
+            break
+        size[worse] *= 0.5
+    return next_a, next_b, better
 
 
 def _step(a: Array, b: Array, x: Array, n: Array, k: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
