@@ -172,7 +172,8 @@ class Publication:
         return closing(self._each_rendered(pages, draw=draw))
 
     def _each_rendered(self, pages: Sequence[_PublishedPage], *, draw: bool) -> Generator[Rendered]:
-        with self._scheduler.workers(sum(len(page.planned.part.objects) for page in pages)) as (workers, context):
+        objects = sum(len(page.planned.part.objects) for page in pages)
+        with self._scheduler.workers(objects, showing=True) as (workers, context):
             tasks = (self._page_task(page, draw=draw) for page in pages)
             with closing(workers.each(render_page, context, tasks)) as done:
                 yield from done

@@ -169,6 +169,7 @@ class Pair(SerialPool):
 @pytest.fixture
 def pair(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scheduler, "FEW", 0)
+    monkeypatch.setattr(scheduler, "SHOWN", 0)
     monkeypatch.setattr(scheduler, "BATCH", 2)
     monkeypatch.setattr(scheduler, "pool", lambda **_: nullcontext(Pair()))
 

@@ -35,6 +35,7 @@ def shared(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four batches of about eight objects, and others do the work whatever its size."""
     monkeypatch.setattr(scheduler, "BATCH", 8)
     monkeypatch.setattr(scheduler, "FEW", 0)
+    monkeypatch.setattr(scheduler, "SHOWN", 0)
 
 
 def files(settings: Settings) -> dict[str, bytes]:

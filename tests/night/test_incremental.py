@@ -43,6 +43,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     What costs most and is not compared is left out: HTML, and looking for garbage.  A motion's pulse is found once.
     """
     monkeypatch.setattr(scheduler, "FEW", 4)
+    monkeypatch.setattr(scheduler, "SHOWN", 4)
     monkeypatch.setattr(scheduler, "BATCH", 4)
     monkeypatch.setattr(scheduler, "_SECONDS", 0.0)
     monkeypatch.setattr(scheduler, "pool", lambda **_: pool())
