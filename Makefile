@@ -4,7 +4,7 @@ BIN := .venv/bin
 STAMP := .venv/.kouros-installed
 PEERS := .venv/.kouros-peers
 
-.PHONY: demo test lint docs catalogues bench soak audit airflow check-browser clean
+.PHONY: demo test lint rules types docs catalogues bench soak audit airflow check-browser clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || { echo "python3 has no venv module: apt-get install python3-venv"; exit 1; }
@@ -26,12 +26,18 @@ demo: $(STAMP)  ## the whole job on the bundled collection and record; ends with
 test: $(STAMP) lint check-browser  ## lint, types, floors and all tests
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
+# Types are checked on one core while rules and floors are on the other.
 lint: $(STAMP)
+	@$(MAKE) --no-print-directory --jobs 2 rules types
+
+rules: $(STAMP)
 	$(BIN)/ruff format --check pipeline schemas tests examples docs .ci
 	$(BIN)/ruff check pipeline schemas tests examples docs .ci
 	$(BIN)/bandit --quiet --configfile pyproject.toml --recursive pipeline schemas
-	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+types: $(STAMP)
+	$(BIN)/mypy
 
 # Offline; a broken link, a page that no table of contents names and an unreadable docstring are errors.
 docs: $(STAMP)  ## the documentation, in build/docs

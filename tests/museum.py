@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from pipeline.cache import CHARTS
+from pipeline.cache import CHARTS, MOTIONS, PICTURES, SPECTRA
 from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.night.run import run
@@ -57,14 +57,19 @@ VASE_COLUMNS = (
 )  # fmt: skip
 
 
-def in_common(folder: Path) -> None:
-    """Let a museum in a folder keep its response charts where all others do: each is the same whoever built it."""
-    charts = folder / KEPT / CHARTS
-    if not charts.exists():
-        charts.parent.mkdir(parents=True, exist_ok=True)
-        common = Path(os.environ[SHARED]) / "charts"
-        common.mkdir(exist_ok=True)
-        charts.symlink_to(common, target_is_directory=True)
+OF_MOTIONS = (MOTIONS, CHARTS, PICTURES, SPECTRA)
+"""What is kept of motions alone, whatever objects there are."""
+
+
+def in_common(folder: Path, kinds: tuple[str, ...] = OF_MOTIONS) -> None:
+    """Let a museum in a folder keep what it finds of motions where all others do: it is the same whoever found it."""
+    for kind in kinds:
+        kept = folder / KEPT / kind
+        if not kept.exists():
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            common = Path(os.environ[SHARED]) / kind
+            common.mkdir(exist_ok=True)
+            kept.symlink_to(common, target_is_directory=True)
 
 
 @cache
@@ -81,9 +86,14 @@ def with_tables(file: Path) -> None:
         shutil.copyfile(_tables(), file)
 
 
-def workspace(folder: Path, rows: list[str] | None = None, site: str = "demo") -> Settings:
-    """A small museum of its own in a folder; only the charts, which take most of a first night, it has in common."""
+def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief") -> Settings:
+    """A small museum of its own in a folder; only what it finds of motions it has in common with all others.
+
+    site : a folder, made by `own_site` where it is missing and no other is named, or a bundled site by its name
+    """
     in_common(folder)
+    if site == "brief" and not (folder / site).exists():
+        own_site(folder, site)
     with_tables(folder / DATABASE)
     (folder / "export.csv").write_text("\n".join([COLUMNS, *(ROWS if rows is None else rows)]) + "\n", encoding="utf-8")
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
@@ -107,9 +117,14 @@ def on_the_floor(folder: Path) -> Settings:
     return load_settings(file)
 
 
-def own_site(folder: Path) -> Path:
-    """A copy of the bundled site that a test may break."""
-    return Path(shutil.copytree(resource("site_motions", "demo"), folder / "site"))
+def own_site(folder: Path, name: str = "site", window_s: tuple[float, float] = (30.0, 60.0)) -> Path:
+    """A copy of the bundled site that a test may break, of the main shock without what is quiet around it.
+
+    These 30 s have the peaks of all 100 s, and of their Arias intensity all but a hundredth: nights take a third.
+    """
+    site = Path(shutil.copytree(resource("site_motions", "demo"), folder / name))
+    edit(site / "manifest.toml", "window_s = [20.0, 120.0]", f"window_s = {list(window_s)}")
+    return site
 
 
 def short_site(folder: Path) -> Path:

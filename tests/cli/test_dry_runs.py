@@ -27,9 +27,10 @@ from pipeline.errors import KourosError
 from pipeline.motions import read_motion
 from pipeline.operations.dry_run import NOTHING
 from pipeline.resources import resource
+from pipeline.settings import KEPT
 from pipeline.store.migrate import revisions
 from pipeline.tools.synthetic import synthesise
-from tests.museum import COLUMNS, ROWS, workspace
+from tests.museum import COLUMNS, OF_MOTIONS, ROWS, workspace
 
 pytestmark = pytest.mark.slow_file
 
@@ -74,14 +75,14 @@ def museum(tmp_path_factory: pytest.TempPathFactory) -> Path:
         assert say(folder, name)[0] == 0
     assert say(folder, "decide", "1", "accept", "--why", "a test", "--who", "A")[0] == 0
     # A folder that all tests have in common cannot tell who wrote there.
-    charts = folder / ".kouros-kept" / "charts"
-    common = charts.resolve()
-    charts.unlink()
-    charts.mkdir()
     hashes = {motion.hash[:16] for motion in read_motion(folder / "shaking")}
-    for file in common.glob("*.kept"):
-        if any(hash_ in file.name for hash_ in hashes):
-            shutil.copyfile(file, charts / file.name)
+    for kept in (folder / KEPT / kind for kind in OF_MOTIONS):
+        common = kept.resolve()
+        kept.unlink()
+        kept.mkdir()
+        for file in common.glob("*.kept"):
+            if any(hash_ in file.name for hash_ in hashes):
+                shutil.copyfile(file, kept / file.name)
     settings = folder / "kouros.toml"
     lines = settings.read_text("utf-8").replace("runs = 0", "runs = 1").replace("reports = 0", "reports = 1")
     settings.write_text(lines, encoding="utf-8")

@@ -17,7 +17,7 @@ from pipeline.mitigate.measures import checked
 from pipeline.motions import read_motion
 from pipeline.settings import template
 from pipeline.tables import TableError
-from tests.museum import few_samples
+from tests.museum import few_samples, in_common
 from tests.packages import install
 from tests.warm import kouros_process
 
@@ -75,6 +75,7 @@ def museum(tmp_path: Path) -> Path:
     """Three objects under one strong sine: the picture swings, the vase rocks, the plate stays where it is."""
     folder = tmp_path / "museum"
     folder.mkdir()
+    in_common(folder)
     (folder / "collection.csv").write_text(COLLECTION, encoding="utf-8")
     sine = ("motions", "synthesise", "sine", "amplitude=5", "frequency=1", "cycles=3", "--out", "site")
     assert kouros(folder, *sine).returncode == 0

@@ -20,7 +20,7 @@ from pipeline.quantities import G
 from pipeline.records import Item
 from pipeline.resources import resource
 from pipeline.settings import load_settings, template
-from tests.museum import few_samples
+from tests.museum import few_samples, in_common
 from tests.packages import install
 from tests.warm import kouros_process
 
@@ -165,6 +165,7 @@ unit = "m"
 
 def museum(folder: Path, *rows: str) -> None:
     """A museum of its own in a folder, whose objects stand on the floor: closed forms hold of its motion."""
+    in_common(folder)
     (folder / "export.csv").write_text("\n".join(["number,gallery,title,height,width", *rows]) + "\n", encoding="utf-8")
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     settings = few_samples(template(museum="Test", source="export.csv", mapping="mapping.toml", site="demo"))

@@ -14,6 +14,7 @@ from random import Random
 from sqlalchemy import insert, select
 
 from pipeline import tables
+from pipeline.cache import CHARTS
 from pipeline.collection.inventory import latest_import
 from pipeline.motions.manifest import SiteTable
 from pipeline.motions.synthesis import half_sine_pulse
@@ -200,7 +201,8 @@ class Changing:
         """Run a first night of a museum of the same state, and return the folder of its report."""
         left = shutil.ignore_patterns("kouros.sqlite*", "reports", ".kouros*", "imports")
         shutil.copytree(self.home, folder, ignore=left)
-        in_common(folder)
+        # Motions are processed anew: a change that what is kept of them does not know of would else be in both.
+        in_common(folder, (CHARTS,))
         with_tables(folder / DATABASE)
         if self.held is not None:
             (folder / "collection.csv").write_bytes(self.held)

@@ -44,7 +44,8 @@ SIZES = {"height_m": 0.5, "width_m": 0.3, "depth_m": 0.25}
 STUFF = {"stemmed_glass": {"medium": "glass"}, "standing_figure": {"medium": "marble", "height_m": 1.8}}
 SHAPES = ("", "round", "hollow round", "ring", "rectangle", "legs", "hexagon", "=1+1")
 NUMBERS = tuple(name for name in plausible() if name != "diameter_m")
-ROUNDS = int(os.environ.get("KOUROS_OBJECTS", "2"))
+SOAK = "KOUROS_OBJECTS" in os.environ
+ROUNDS = int(os.environ.get("KOUROS_OBJECTS", "1"))
 """Records of each class and support with numbers drawn at the ends of what is plausible."""
 
 
@@ -56,6 +57,9 @@ def records() -> list[dict[str, Any]]:
             whole = {"object_name": name, "support": str(support), **SIZES, **STUFF.get(kind, {})}
             some = [whole, {**whole, "height_m": ""}, {**whole, "width_m": "", "depth_m": ""}]
             some.append({**whole, "base_width_m": 0.2, "base_depth_m": 0.2, "mass_kg": 8.0})
+            if not SOAK:
+                # In turn where there is little time: each class with each of them, not in every support.
+                some = [some[len(out) // 2 % len(some)]]
             for _ in range(ROUNDS):
                 ends = {f: chance.choice((plausible()[f].low, plausible()[f].high, "")) for f in NUMBERS}
                 texts = {"section_shape": chance.choice(SHAPES), "susceptible": chance.choice(("yes", "no", ""))}
@@ -132,7 +136,7 @@ def test_every_measure_at_the_ends_of_its_range_is_run_on_every_class(tmp_path: 
         for number, measure in enumerate(own_catalogue().installable)
         for end in ("low", "high")
         # In turn where there is little time.
-        if ROUNDS > 2 or (at + number) % 5 == (0 if end == "low" else 2)
+        if SOAK or (at + number) % 9 == (0 if end == "low" else 4)
     ]
     rows = [
         {"object_number": f"{at}", "gallery": f"Room {at % 5}", "title": f"No. {at}", "object_name": "Thing", **SIZES}
