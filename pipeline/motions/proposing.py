@@ -215,11 +215,7 @@ class _Making:
         if len(self.traces) > 3:
             return self._which()
         if len(self.traces) < 2:
-            named = ", ".join(path.name for path in self.local.values())
-            (channel,) = self._by_trace()
-            known = "" if channel.orientation is None else f", {_degrees(channel.orientation)}"
-            wrong = f"{named} holds one channel ({channel.code}{known})"
-            raise MotionError(f"{wrong}; give the files of the other components of {_label(self.of)} as well")
+            raise MotionError(f"{self._alone()}; give the files of the other components of {_label(self.of)} as well")
         response = self._response()
         processed = self._processed(response)
         components = self._components()
@@ -251,6 +247,16 @@ class _Making:
         if "vertical" in table:
             self.told.append("no vertical component: none will shake anything")
         return RecordProposal(name, files, Record(**table), (), tuple(self.told))
+
+    def _alone(self) -> str:
+        """What a file of one channel says of it, which is no record by itself."""
+        (channel,), trace = self._by_trace(), self.first
+        unit, said = own_unit(trace.stats)[0], trace.stats.get("kouros", {}).get("processed")
+        known = [] if channel.orientation is None else [_degrees(channel.orientation)]
+        known += [f"in {unit}"] if unit else []
+        known += [] if said is None else ["processed" if said else "raw"]
+        named = ", ".join(path.name for path in self.local.values())
+        return f"{named} holds one channel ({', '.join([channel.code, *known])})"
 
     def _which(self) -> RecordProposal:
         there = "; ".join(
