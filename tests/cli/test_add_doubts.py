@@ -142,10 +142,23 @@ def test_a_single_channel_says_which_it_is(tmp_path: Path) -> None:
     (tmp_path / "e.asc").write_bytes(hand.esm())
     code, out = say(tmp_path, "add", "e.asc", "--site", "mine")
     assert code == 4
-    assert (
-        "e.asc holds one channel (HNE, 90 degrees, in cm/s2, processed); give the files of the other components of"
-        in out
+    told = (
+        "e.asc holds 1 channel (HNE, 90 degrees, in cm/s2, processed), and lacks the other horizontal component; give "
     )
+    assert f"{told}the files of the other components of" in out
+
+
+def test_a_horizontal_and_a_vertical_say_what_they_lack(tmp_path: Path) -> None:
+    (tmp_path / "a.v1").write_bytes(national.volume1(channels=("90 DEG", "UP")))
+    code, out = say(tmp_path, "add", "a.v1", "--site", "mine")
+    assert code == 4
+    told = (
+        "a.v1 holds 2 channels (HNE, 90 degrees, in g/10, raw; HNZ, up, in g/10, raw), and lacks the other horizontal"
+    )
+    assert told in out
+    (tmp_path / "z.v1").write_bytes(national.volume1(channels=("UP",)))
+    code, out = say(tmp_path, "add", "z.v1", "--site", "mine")
+    assert (code, "lacks both horizontal components" in out) == (4, True), out
 
 
 def test_every_format_in_one_folder_is_added_or_left_with_a_reason(tmp_path: Path) -> None:
