@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
-from typing import IO
+from typing import Protocol
 
 from pipeline.motions.errors import MotionError, refusal
 from pipeline.motions.safe_names import safe_name
@@ -27,6 +27,12 @@ _DEEPEST = 3
 
 _STEP = 1 << 20
 _TAR = slice(257, 262)
+
+
+class _Bytes(Protocol):
+    """What gives bytes."""
+
+    def read(self, size: int, /) -> bytes: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +104,7 @@ class Unpacking:
             raise refusal(outer, "file", wrong, "fetch it again, or unpack it and name the folder") from error
         return [below for each in held for below in self._files_of(each, outer, depth + 1)]
 
-    def _kept(self, outer: Path, shown: Path, stream: IO[bytes], depth: int) -> UnpackedFile:
+    def _kept(self, outer: Path, shown: Path, stream: _Bytes, depth: int) -> UnpackedFile:
         place = self._places.get((shown.parent, depth))
         if place is None:
             place = self._places[shown.parent, depth] = Path(tempfile.mkdtemp(dir=self.scratch))
@@ -128,18 +134,18 @@ def _kind(path: Path, shown: Path) -> str:
     return "tar" if start[_TAR] == b"ustar" else ""
 
 
-def _members(kind: str, one: UnpackedFile) -> Iterator[tuple[Path, IO[bytes]]]:
+def _members(kind: str, one: UnpackedFile) -> Iterator[tuple[Path, _Bytes]]:
     """The files of an archive, one at a time: what each is called, and its bytes."""
     if kind == "gzip":
         bare = one.shown.with_suffix("") if one.shown.suffix.lower() in {".gz", ".gzip", ".tgz"} else one.shown
-        with gzip.open(one.path) as stream:
-            yield bare, stream
+        with gzip.open(one.path) as packed:
+            yield bare, packed
     elif kind == "ZIP":
         with zipfile.ZipFile(one.path) as archive:
             for entry in archive.infolist():
                 if not entry.is_dir() and (shown := _shown(one.shown, entry.filename)):
-                    with archive.open(entry) as stream:
-                        yield shown, stream
+                    with archive.open(entry) as held:
+                        yield shown, held
     else:
         with tarfile.open(one.path, "r:") as archive:
             for number, member in enumerate(archive):
