@@ -125,7 +125,7 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         processed=volume == 2,
         station=station,
         location=f"{number:02d}",
-        channel=trace_headers.channel_code(1.0 / dt, direction, number),
+        channel=trace_headers.channel_code(1.0 / dt, direction, number if marked else None),
         start=when,
         start_is=start_is,
         headonly=headonly,

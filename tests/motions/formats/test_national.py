@@ -282,3 +282,14 @@ def test_usc_volume_2_as_its_older_files_are(every, unit):
 def test_usc_volume_2_without_any_word_on_its_unit():
     with pytest.raises(FormatError, match=r"does not say the unit"):
         traces(national.usc2(("UP",), (1,), unit=False).replace(b"PEAK ACC", b"HIGH ACC"), "csmip")
+
+
+@pytest.mark.parametrize("write", [national.usc2, lambda names: national.volume1("usc", names)])
+def test_files_of_one_channel_each_differ_by_what_they_are_called(tmp_path, write):
+    """The USC's files have no number of a channel: their three are one record of a station, whatever the azimuths."""
+    for azimuths in (("N08W", "S82W"), ("N45E", "N45W"), ("S30E", "N60E")):
+        codes = []
+        for name in (*azimuths, "UP"):
+            (tmp_path / "record").write_bytes(write((name,)))
+            codes += [trace.stats.channel for trace in open_traces(tmp_path / "record", [])]
+        assert sorted(code[-1] for code in codes) == ["1", "2", "Z"]
