@@ -132,9 +132,9 @@ def choose_corner(
 
     Notes
     -----
-    Error: beside gmprocess 2.8.0 on ten raw records the corner is within a factor of 1.6 on eight, and the PGV within 3.3 %
-    of that at its corner. On the others, a near-fault and a very weak record, a corner 2.5 and 3.6 times lower is used,
-    with a PGV 7 and 66 % larger: the record does not decide, and the stronger motion counts.
+    Error: beside gmprocess 2.8.0 on ten raw records the corner is within a factor of 1.6 on eight, and the PGV within
+    3.3 % of that at its corner. On the others, a near-fault and a very weak record, a corner 2.5 and 3.6 times lower is
+    used, with a PGV 7 and 66 % larger: the record does not decide, and the stronger motion counts.
 
     References
     ----------
