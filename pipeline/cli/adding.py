@@ -113,9 +113,9 @@ def add(
     """Add records to a site: copy their files, write the manifest, show what was done to them and what changes.
 
     FILES are the files of one or more records, or folders of them, with StationXML, QuakeML and GeoJSON (of ComCat, or
-    of site and stations), and the table of a PEER search, wherever they lie among them.  What no file says is asked at
-    a terminal; elsewhere every missing answer is named with its option, and nothing is written.  Nothing is ever
-    overwritten, and whoever had approved the level has to look again.
+    of site and stations), and the table of a PEER search, wherever they lie among them, also packed (gzip, ZIP, tar).
+    What no file says is asked at a terminal; elsewhere every missing answer is named with its option, and nothing is
+    written.  Nothing is ever overwritten, and whoever had approved the level has to look again.
 
     Example: kouros motions add CI.CLC..HN?.mseed CI.CLC.xml --site site_motions/site
     """

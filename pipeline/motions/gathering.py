@@ -16,6 +16,7 @@ from pipeline.motions.parts import LARGEST
 from pipeline.motions.peer_search import SearchRow, read_search
 from pipeline.motions.reading import open_traces
 from pipeline.motions.safe_names import one_line
+from pipeline.motions.unpacking import UnpackedFile, Unpacking
 
 _NO_ACCELERATION = {".VT2": "velocity", ".DT2": "displacement"}
 """Endings of PEER's other files."""
@@ -52,7 +53,7 @@ class GatheredFiles:
     passed_over: list[str] = field(default_factory=list)
 
 
-def gather(given: Sequence[Path], leave: frozenset[Path] = frozenset()) -> GatheredFiles:
+def gather(given: Sequence[Path], leave: frozenset[Path] = frozenset(), scratch: Path | None = None) -> GatheredFiles:
     """Read files, and those of folders with what is below them.
 
     A StationXML that lies beside a file that was named counts as well.
@@ -63,6 +64,9 @@ def gather(given: Sequence[Path], leave: frozenset[Path] = frozenset()) -> Gathe
         Files and folders.
     leave : set of Path
         Resolved paths that are left out: what a site has already.
+    scratch : Path or None
+        An empty folder, where packed files are unpacked to and stay as long as their records are needed; None unpacks
+        none, and refuses them.
 
     Returns
     -------
@@ -77,20 +81,26 @@ def gather(given: Sequence[Path], leave: frozenset[Path] = frozenset()) -> Gathe
     files = _files(given, made)
     folders: dict[Path, int] = {}
     responses: set[Path] = set()
+    unpacking = None if scratch is None else Unpacking(scratch)
     for file in files:
         if file.resolve() in leave:
             continue
-        name = f"{folders.setdefault(file.parent, len(folders))}/{file.name}"
+        folders.setdefault(file.parent, len(folders))
         try:
-            if not _take_other(file, made):
-                made.paths[name] = file
-                made.traces.append((name, open_traces(file, [])))
-            elif file in made.catalogues.inventories:
-                responses.add(file.resolve())
-        except MotionError as problem:
+            every = [UnpackedFile(file, file)] if unpacking is None else unpacking.files_of(file)
+        except (MotionError, OSError) as problem:
             made.unusable.append(Unusable(one_line(str(file)), _why(file, problem)))
-        except OSError as problem:
-            made.unusable.append(Unusable(one_line(str(file)), f"cannot be read: {problem.strerror or problem}"))
+            continue
+        for one in every:
+            name = f"{folders.setdefault(one.shown.parent, len(folders))}/{one.path.name}"
+            try:
+                if not _take_other(one, made):
+                    made.paths[name] = one.path
+                    made.traces.append((name, open_traces(one.path, [])))
+                elif one.path in made.catalogues.inventories:
+                    responses.add(one.path.resolve())
+            except (MotionError, OSError) as problem:
+                made.unusable.append(Unusable(one_line(str(one.shown)), _why(one.path, problem)))
     for folder in folders:
         _take_responses(folder, responses, made)
     return made
@@ -116,8 +126,9 @@ def _files(given: Sequence[Path], made: GatheredFiles) -> list[Path]:
     return list(files)
 
 
-def _take_other(file: Path, made: GatheredFiles) -> bool:
+def _take_other(one: UnpackedFile, made: GatheredFiles) -> bool:
     """Take in what is no record, and say whether it is none."""
+    file = one.path
     if not file.is_file():
         raise refusal(file, "file", "is no file of its own", "name a file of a record")
     if made.catalogues.take(file):
@@ -128,15 +139,17 @@ def _take_other(file: Path, made: GatheredFiles) -> bool:
         return True
     kind = _NO_ACCELERATION.get(file.suffix.upper())
     if kind:
-        made.passed_over.append(f"{file}: a {kind}; the acceleration is what is read")
+        made.passed_over.append(f"{one.shown}: a {kind}; the acceleration is what is read")
     elif file.suffix.lower() in NO_RECORDS:
-        made.passed_over.append(f"{file}: words or pictures")
+        made.passed_over.append(f"{one.shown}: words or pictures")
     else:
         return False
     return True
 
 
-def _why(file: Path, problem: MotionError) -> str:
+def _why(file: Path, problem: MotionError | OSError) -> str:
+    if isinstance(problem, OSError):
+        return f"cannot be read: {problem.strerror or problem}"
     words = str(problem).removeprefix(f"{file}: ")
     if file.stat().st_size <= LARGEST and zipfile.is_zipfile(file):
         return "is an archive: unpack it, and name the folder"

@@ -21,6 +21,7 @@ from pipeline.motions.reading import UNITS, own_unit
 from pipeline.motions.record import EventTable, Record, StationTable
 from pipeline.motions.safe_names import one_line, safe_name
 from pipeline.motions.station_metadata import depth, has_response, metadata, sac_direction
+from pipeline.quantities import counted
 
 _STEEP = 80.0
 """Degrees of dip from which a channel is a vertical one."""
@@ -214,12 +215,9 @@ class _Making:
         """Return the record, or what has to be asked first."""
         if len(self.traces) > 3:
             return self._which()
-        if len(self.traces) < 2:
-            named = ", ".join(path.name for path in self.local.values())
-            (channel,) = self._by_trace()
-            known = "" if channel.orientation is None else f", {_degrees(channel.orientation)}"
-            wrong = f"{named} holds one channel ({channel.code}{known})"
-            raise MotionError(f"{wrong}; give the files of the other components of {_label(self.of)} as well")
+        if missing := self._missing():
+            remedy = f"give the files of the other components of {_label(self.of)} as well"
+            raise MotionError(f"{self._held()}, and lacks {missing}; {remedy}")
         response = self._response()
         processed = self._processed(response)
         components = self._components()
@@ -233,24 +231,37 @@ class _Making:
             table["response"] = _free(safe_name(response.name), files)
             files[table["response"]] = response
             if is_velocity(self.traces):
-                full = saturated(self.traces)
-                if full:
+                if full := saturated(self.traces):
                     raise MotionError(f"{full}; give the accelerometer of the station")
                 self.told.append("a velocity sensor: look whether the strong shaking has clipped it")
         unit = self._unit(response)
-        table |= {} if unit is None else {"units": unit}
         table |= {} if len(components) == 3 else {"vertical": "absent"}
-        table |= {} if processed is None else {"processed": processed}
         if self.search is not None and self.search.scale is not None:
             table["scale"] = self.search.scale
             self.told.append(f"scale {self.search.scale:g}, as the search has it")
-        said = {"event": event, "station": station, "distance_km": distance}
+        said = {"units": unit, "processed": processed, "event": event, "station": station, "distance_km": distance}
         table |= {key: value for key, value in said.items() if value is not None}
         table |= {"source": self._source(station), "licence": self.answers.licence or _LICENCE}
         table["sha256"] = {local: hashlib.sha256(path.read_bytes()).hexdigest() for local, path in files.items()}
         if "vertical" in table:
             self.told.append("no vertical component: none will shake anything")
         return RecordProposal(name, files, Record(**table), (), tuple(self.told))
+
+    def _missing(self) -> str:
+        """Which horizontals a record lacks; without a vertical it is one."""
+        flat = sum(channel.axis != "z" for channel in self._by_trace())
+        return "" if flat >= 2 else "the other horizontal component" if flat else "both horizontal components"
+
+    def _held(self) -> str:
+        """What files say of channels that are no record by themselves."""
+        told = []
+        for (_, trace), channel in zip(self.traces, self._by_trace(), strict=True):
+            towards = "" if channel.orientation is None else _degrees(channel.orientation)
+            unit = f"in {own_unit(trace.stats)[0]}".removesuffix("in ")
+            kind = {True: "processed", False: "raw"}.get(trace.stats.get("kouros", {}).get("processed"), "")
+            told.append(", ".join(word for word in (channel.code, towards, unit, kind) if word))
+        named = ", ".join(path.name for path in self.local.values())
+        return f"{named} holds {counted(len(told), 'channel')} ({'; '.join(told)})"
 
     def _which(self) -> RecordProposal:
         there = "; ".join(

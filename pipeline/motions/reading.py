@@ -334,6 +334,8 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
         raise refusal(
             file, "file", f"its pieces do not fit ({error})", "give files with one trace a channel"
         ) from error
+    if not stream:
+        raise refusal(file, "file", "holds a header and no samples", "fetch it again")
     for trace in stream:
         s = trace.stats
         logger.debug("%s: %s, %s, %d samples at %g Hz", file, s._format, trace.id, s.npts, s.sampling_rate)

@@ -8,6 +8,7 @@ from pathlib import Path
 from pipeline.motions.errors import MotionError, refusal
 from pipeline.motions.formats import NAMES, record_text
 
+_HDF5 = b"\x89HDF"
 _PACKED = {b"\x1f\x8b": "gzip", b"PK\x03\x04": "ZIP", b"BZh": "bzip2", b"\xfd7zXZ": "xz", b"7z\xbc\xaf": "7-Zip"}
 
 
@@ -28,7 +29,12 @@ def unknown(file: Path) -> MotionError:
         start = stream.read(400)
     packed = next((name for magic, name in _PACKED.items() if start.startswith(magic)), None)
     if packed:
-        return refusal(file, "file", f"is packed ({packed})", "unpack it: what is read is what its hash is of")
+        remedy = "unpack it: what is read is what its hash is of (kouros motions add unpacks gzip, ZIP and tar)"
+        return refusal(file, "file", f"is packed ({packed})", remedy)
+    if start.startswith(_HDF5):
+        return refusal(
+            file, "file", "is HDF5 (such as ASDF)", "export its waveforms as MiniSEED, with their StationXML"
+        )
     if not start.strip(b" \t\r\n\0\x1a"):
         return refusal(file, "file", "is empty", "fetch it again")
     if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or _in_utf16(start):

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from pipeline.motions.candidates import Unusable
@@ -145,12 +146,30 @@ def add(
     MotionError
         For a site or a record that cannot be used; then nothing was written.
     """
+    with TemporaryDirectory(prefix="kouros-add-") as scratch:
+        return _added(files, folder, wish, settings, units, page, ask, progress, Path(scratch), dry_run=dry_run)
+
+
+def _added(
+    files: Sequence[Path],
+    folder: Path,
+    wish: AddWish,
+    settings: "Settings | None",
+    units: "Units",
+    page: Path | None,
+    ask: Ask | None,
+    progress: Progress,
+    scratch: Path,
+    *,
+    dry_run: bool,
+) -> Addition:
+    """Add records to a site, with a folder to unpack files in."""
     if folder.name == MANIFEST:
         folder = folder.parent
     before, known = opened(folder)
     there = frozenset() if known is None else frozenset((folder / n).resolve() for n in _named(known))
     progress.step("files", 0, 1)
-    found = gather(files, leave=there if _inside(files, folder) else frozenset())
+    found = gather(files, leave=there if _inside(files, folder) else frozenset(), scratch=scratch)
     progress.step("files", 1, 1)
     answers, level = wish.answers, wish.answers.level
     proposals, left = propose(found, answers)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bz2
 import gzip
 import json
 import re
@@ -141,7 +142,23 @@ def test_a_single_channel_says_which_it_is(tmp_path: Path) -> None:
     (tmp_path / "e.asc").write_bytes(hand.esm())
     code, out = say(tmp_path, "add", "e.asc", "--site", "mine")
     assert code == 4
-    assert "e.asc holds one channel (HNE, 90 degrees); give the files of the other components of" in out
+    told = (
+        "e.asc holds 1 channel (HNE, 90 degrees, in cm/s2, processed), and lacks the other horizontal component; give "
+    )
+    assert f"{told}the files of the other components of" in out
+
+
+def test_a_horizontal_and_a_vertical_say_what_they_lack(tmp_path: Path) -> None:
+    (tmp_path / "a.v1").write_bytes(national.volume1(channels=("90 DEG", "UP")))
+    code, out = say(tmp_path, "add", "a.v1", "--site", "mine")
+    assert code == 4
+    told = (
+        "a.v1 holds 2 channels (HNE, 90 degrees, in g/10, raw; HNZ, up, in g/10, raw), and lacks the other horizontal"
+    )
+    assert told in out
+    (tmp_path / "z.v1").write_bytes(national.volume1(channels=("UP",)))
+    code, out = say(tmp_path, "add", "z.v1", "--site", "mine")
+    assert (code, "lacks both horizontal components" in out) == (4, True), out
 
 
 def test_every_format_in_one_folder_is_added_or_left_with_a_reason(tmp_path: Path) -> None:
@@ -165,7 +182,7 @@ def test_every_format_in_one_folder_is_added_or_left_with_a_reason(tmp_path: Pat
     records = load_manifest(tmp_path / "mine").level[0].record
     assert {record.name for record in records} == names
     assert all(len(one["reason"]) > 10 and "\n" not in one["name"] for one in answer["left"])
-    for word in ("words.csv", "is packed (gzip)", "readme.txt"):
+    for word in ("words.csv", "packed.v1", "readme.txt"):
         assert word in told
     # The specimens last 0.6 s: what is no record of an earthquake is left with its check, or asks.
     assert len(answer["left"]) + len(names) >= len(SPECIMENS) - 6, "those of one channel and station are one"
@@ -187,7 +204,8 @@ HOSTILE: dict[str, tuple[Spoil, str]] = {
     "blanks": (lambda _: b" \r\n\0\x1a", "is empty"),
     "UTF-16": (lambda raw: raw.decode("latin-1").encode("utf-16"), "is text in UTF-16; save it as plain text"),
     "UTF-16 unmarked": (lambda raw: raw.decode("latin-1").encode("utf-16-be"), "is text in UTF-16"),
-    "gzip": (gzip.compress, "is packed (gzip); unpack it"),
+    "bzip2": (bz2.compress, "is packed (bzip2); unpack it"),
+    "gzip cut off": (lambda raw: gzip.compress(raw)[:-9], "cannot be unpacked (gzip: "),
     "huge count": (lambda raw: raw.replace(b"   60 points", b"99999999 points", 1), "99999999"),
     "wrong count": (lambda raw: raw.replace(b"   60 points", b"   72 points", 1), "line "),
     "no number": (

@@ -121,11 +121,29 @@ def test_the_source_of_a_small_earthquake():
     assert small.reason.startswith("source")
 
 
+@pytest.mark.parametrize("quiet", [6.0, 10.0, 16.0])
+def test_nothing_is_known_below_what_the_noise_resolves(quiet):
+    """White noise of a millionth of the event: the corner is one over its length, where gmprocess begins its spectra.
+
+    The event has nothing below 0.5 Hz, so that the PGV is the same.
+    """
+    rng = np.random.default_rng(4)
+    motion = Motion(DT, clean(at=quiet + 5.5).acceleration + 4e-6 * rng.normal(size=(3, 6000)))
+    corner = choose_corner(motion)
+    arrival = first_arrival(motion)
+    assert arrival == pytest.approx(quiet, abs=1.5)
+    assert corner.frequency == pytest.approx(1.0 / arrival, rel=0.01)
+    assert corner.reason.startswith("pre-event noise")
+    assert "below which it is unknown" in corner.reason
+    assert pgv(motion, corner.frequency) == pytest.approx(pgv(motion, 0.05), rel=0.01)
+
+
 def test_corner_is_raised_by_a_bent_baseline():
     """A bend over the whole record: the corner is within a factor of two of the published one; the PGV stays."""
     s = np.linspace(-1.0, 1.0, 6000)
     bend = 0.004 * (1 - s**2) ** 2 * np.cos(2 * np.pi * s)
-    bent = Motion(DT, clean().acceleration + np.stack([bend, -bend, 100.0 * bend]), "bent")
+    # Its noise before the event, which the bend is, is too short to be looked at.
+    bent = Motion(DT, clean(at=8.0).acceleration + np.stack([bend, -bend, 100.0 * bend]), "bent")
     corner = choose_corner(bent)
     assert corner.reason.startswith("displacement drift")
     peer = max(published(row, DT) for row in bent.acceleration[:2])

@@ -1,10 +1,16 @@
 """Processing against what a filter must do to a tone, an offset and a drift, and rotation against geometry."""
 
+import gzip
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from pipeline.motions import read_motion
 from pipeline.motions.filtering import highpass, lowpass, pad_seconds, remove_baseline
-from pipeline.motions.processing import cut, rotate
+from pipeline.motions.intensity import integrate
+from pipeline.motions.processing import cut, rotate, starting_velocity
+from pipeline.records import Motion
 
 from .conftest import DT, tone
 
@@ -113,3 +119,49 @@ def test_cut_says_what_velocity_is_left():
 def test_bad_windows(start, end, message):
     with pytest.raises(ValueError, match=message):
         cut(np.zeros((3, 1001)), DT, start, end)
+
+
+def its_velocity(start):
+    """Half a minute of a tone in an envelope, its velocity from a start, and a time step."""
+    a = np.stack([tone(3000, 2.0), tone(3000, 1.0, 2.0), tone(3000, 0.5, 3.0)])
+    return a, integrate(Motion(DT, a, start=start))[0]
+
+
+def test_the_velocity_at_the_start_is_the_first_one_of_the_files():
+    start = np.array([0.02, -0.01, 0.0])
+    a, velocity = its_velocity(start)
+    found, said = starting_velocity(a, velocity, DT)
+    assert found.tolist() == velocity[:, 0].tolist() == start.tolist()
+    assert said == ()
+
+
+def test_a_transient_in_the_first_velocity_is_not_what_a_record_starts_with():
+    """A filter's ringing over the first 0.3 s: by the first sample alone, 30 s would add 0.6 m to the displacement."""
+    start = np.array([0.001, 0.0, 0.0])
+    a, velocity = its_velocity(start)
+    velocity = velocity + 0.02 * np.exp(-np.arange(3000) * DT / 0.1)
+    found, said = starting_velocity(a, velocity, DT)
+    # The mean of the transient over the record: 0.02 m/s times 0.1 s / 30 s.
+    assert found == pytest.approx(start + 0.02 * 0.1 / 30.0, abs=4e-6)
+    assert [told[:1] for told in said] == ["x", "y", "z"]
+    assert "starts at 0.0011 m/s, by all of the velocity of its files; their first sample is 0.021 m/s" in said[0]
+
+
+def test_a_velocity_that_is_not_the_integral_of_its_acceleration_is_told():
+    a, velocity = its_velocity(np.zeros(3))
+    peak = np.abs(velocity[0]).max()
+    velocity[0] += 0.2 * peak * np.linspace(0.0, 1.0, 3000)
+    found, said = starting_velocity(a, velocity, DT)
+    assert found.tolist() == [0.0, 0.0, 0.0]
+    (told,) = said
+    assert told.startswith(f"x: its acceleration drifts against the velocity of its files, by {0.2 * peak:.2g} m/s")
+
+
+def test_the_displacement_of_coalinga_1983_is_the_printed_one(tmp_path):
+    """CE36456, of which CSMIP prints 5.449, 8.911 and 3.820 cm (90, 360, up), and 28.253, 34.298 and 11.377 cm/s."""
+    packed = Path(__file__).parents[1] / "data" / "motions" / "ce36456p_CE36456.V2.gz"
+    (tmp_path / "CE36456.V2").write_bytes(gzip.decompress(packed.read_bytes()))
+    (motion,) = read_motion(tmp_path / "CE36456.V2")
+    velocity, displacement = integrate(motion)
+    assert np.abs(velocity).max(axis=1) == pytest.approx([0.28253, 0.34298, 0.11377], rel=0.015)
+    assert np.abs(displacement).max(axis=1) == pytest.approx([0.05449, 0.08911, 0.0382], rel=0.15)

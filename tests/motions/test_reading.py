@@ -10,6 +10,8 @@ import pytest
 
 from pipeline.cache import MOTIONS, CacheWarning
 from pipeline.motions import MotionError, read_motion, read_site
+from pipeline.motions.gathering import gather
+from pipeline.motions.reading import open_traces
 from pipeline.quantities import G
 
 from .conftest import DT, tone
@@ -39,6 +41,17 @@ def test_truncated_miniseed(three, write_manifest, tmp_path, cut):
     path = tmp_path / "n.mseed"
     path.write_bytes(path.read_bytes()[:-cut])
     refused(write_manifest(), "n.mseed", "cut off")
+
+
+def test_a_header_without_samples_is_named_and_not_passed_over(tmp_path, write_trace):
+    """obspy reads it as a trace of none, and leaves that out where pieces are put together."""
+    file = write_trace("e.sac", np.zeros(0, np.float32), form="SAC")
+    with pytest.raises(MotionError, match=r"e\.sac: file: holds a header and no samples"):
+        open_traces(file, [])
+    found = gather([tmp_path])
+    assert [(one.name, one.reason) for one in found.unusable] == [
+        (str(file), "file: holds a header and no samples; fetch it again")
+    ]
 
 
 @pytest.mark.parametrize("form", ["SLIST", "SAC"])

@@ -164,7 +164,10 @@ def _names(text: list[str], comments: list[str], integers: Array, absent: float,
     code = next((found for line in text if (found := _CODE.search(line))), None)
     station, network = (code[2], code[1]) if code else ("", "")
     number = int(said[1]) if said and said[1].isdigit() else max(0, int(integers[49]))
-    location, channel = f"{number:02d}" if number else "", trace_headers.channel_code(1.0 / dt, direction, number)
+    location, channel = (
+        f"{number:02d}" if number else "",
+        trace_headers.channel_code(1.0 / dt, direction, number or None),
+    )
     if scnl := next((found for line in comments if (found := _SCNL.search(line))), None):
         station, channel, network, location = scnl[1], scnl[2], scnl[3], scnl[4].replace("-", "")
     return {

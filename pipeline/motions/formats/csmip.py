@@ -36,6 +36,7 @@ _PEAKS = {
     "velocity": re.compile(rf"peak\s+velocity\s*=\s*({NUMBER})\s*cms?/sec\b", re.IGNORECASE),
     "displacement": re.compile(rf"peak\s+displacement\s*=\s*({NUMBER})\s*cms?\b", re.IGNORECASE),
 }
+_PEAK_UNITS = {"acceleration": "cm/sec/sec", "velocity": "cm/sec", "displacement": "cm"}
 _UNCORRECTED_PEAK = re.compile(rf"\bmax\s*=\s*({NUMBER})\s*g\b", re.IGNORECASE)
 _TIME = re.compile(
     r"(?:start|trigger)\s+time:\s*(\d{1,2})/(\d{1,2})/(\d{4}|\d\d),?\s*"
@@ -81,26 +82,31 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         raise lines.error(min(top + _FARTHEST, len(lines)), wrong)
     precise = _precise_step(lines, index) if volume == 2 else None
     series: dict[str, Array] = {}
+    coarse: list[str] = []
     unit, dt, count = "", 0.0, 0
-    # The University of Southern California closed its channels by nothing: all three series make one there.
-    while not (index >= len(lines) and not marked and len(series) == 3):
+    # The University of Southern California closed its channels by nothing, some of them after the acceleration.
+    while marked or not series or not _is_over(lines, index):
         if lines.text(index, f"'{_END}', the end of the channel,").startswith(_END):
+            index += 1
             break
-        if not marked and len(series) == 3 and (lines.blank_until_end(index) or _TITLE.search(lines.text(index))):
-            index -= 1
-            break
-        kind, values, its_unit, its_dt, end = _series(lines, index, precise)
-        if kind in series or (not series and kind != "acceleration"):
+        kind, values, its_unit, its_dt, end = _series(lines, index, precise, text)
+        if kind in series or kind in coarse or (not series and kind != "acceleration"):
             raise lines.error(index, f"{kind} is out of order; acceleration, velocity, displacement were expected")
-        if series and (its_dt != dt or len(values) != count):
+        if series and its_dt > 1.5 * dt:
+            # Its older files have every second velocity and every fifth displacement.
+            coarse.append(kind)
+        elif series and (its_dt != dt or len(values) != count):
             wrong = f"{kind} has {len(values)} samples of {its_dt:g} s, the acceleration {count} of {dt:g} s"
             raise lines.error(index, wrong)
-        series[kind] = values
+        else:
+            series[kind] = values
         if kind == "acceleration":
             unit, dt, count = its_unit, its_dt, len(values)
         index = end
     if not series:
         raise lines.error(index, "the channel holds no acceleration")
+    notes = [assumed] if assumed else []
+    notes += [f"{' and '.join(coarse)} of a longer step not used"] if coarse else []
     when, start_is = started(lines, top, text)
     peaks = _peaks(text, volume)
     if peaks["acceleration"] is not None:
@@ -119,16 +125,16 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         processed=volume == 2,
         station=station,
         location=f"{number:02d}",
-        channel=trace_headers.channel_code(1.0 / dt, direction, number),
+        channel=trace_headers.channel_code(1.0 / dt, direction, number if marked else None),
         start=when,
         start_is=start_is,
         headonly=headonly,
         peak=peaks,
         series={kind: Series(values) for kind, values in series.items() if kind != "acceleration"},
-        more={"notes": assumed} if assumed else {},
+        more={"notes": "; ".join(notes)} if notes else {},
         about=told(text),
     )
-    return trace, index + 1
+    return trace, index
 
 
 def named(lines: Lines, top: int, text: list[str]) -> tuple[int, str, bool]:
@@ -167,24 +173,30 @@ def told(text: list[str]) -> dict[str, Any]:
     return header_facts.about(**said, event_name=header_facts.earthquake_name(text), station_name=name)
 
 
-def _series(lines: Lines, index: int, precise: float | None) -> tuple[str, Array, str, float, int]:
+def _is_over(lines: Lines, index: int) -> bool:
+    """Whether a channel that nothing closes ends before a line: the file does, or the next channel begins."""
+    return index >= len(lines) or lines.blank_until_end(index) or bool(_TITLE.search(lines.text(index)))
+
+
+def _series(lines: Lines, index: int, precise: float | None, text: list[str]) -> tuple[str, Array, str, float, int]:
     found = lines.match(index, _DATA, f"a line of data, or '{_END}'")
     kind = _KINDS[(found["kind"] or "acc").lower()]
     count = blocks.samples(lines, index, int(found["count"]))
     rest = lines.text(index)[found.end() :]
     said = _UNIT.search(rest)
-    if said is None:
+    # Where the line is silent, the peak of its series in the header is of the same unit; samples are held against it.
+    if said is None and not any(_PEAKS[kind].search(line) for line in text):
         raise lines.error(index, "the line does not say the unit of its data")
-    word = said[1].lower()
+    word = said[1].lower() if said else _PEAK_UNITS[kind]
     factor = 1.0
     if kind == "acceleration":
         if word not in _UNITS:
-            raise lines.error(index, f"{record_text.shown(said[1])} is no unit of acceleration that is known")
+            raise lines.error(index, f"{record_text.shown(word)} is no unit of acceleration that is known")
         unit = _UNITS[word]
     else:
         length, _, per = word.partition("/")
         if length not in _LENGTHS or per != ("sec" if kind == "velocity" else ""):
-            raise lines.error(index, f"{record_text.shown(said[1])} is no unit of {kind} that is known")
+            raise lines.error(index, f"{record_text.shown(word)} is no unit of {kind} that is known")
         unit, factor = word, _LENGTHS[length]
     if found["rate"]:
         dt = 1.0 / max(float(found["rate"]), 1e-9)

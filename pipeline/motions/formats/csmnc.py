@@ -63,7 +63,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         direction=direction,
         processed=kind[1] == "CORRECTED",
         station=station,
-        channel=trace_headers.channel_code(1.0 / dt, direction, 1),
+        channel=trace_headers.channel_code(1.0 / dt, direction, None),
         start=when,
         start_is="unknown" if when is None else "earthquake",
         headonly=headonly,

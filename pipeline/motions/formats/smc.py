@@ -83,6 +83,7 @@ def read_format(source: Source, headonly: bool = False, resample: float = irregu
     if name := _STATION.search(lines.text(5)):
         more["station_name"] = name[1]
     quake = _EVENT.match(lines.text(3))
+    number = int(integers[8]) if integers[8] > 0 and not _missing(integers, integers[8]) else None
     trace = trace_headers.make_trace(
         lines,
         data=data,
@@ -93,7 +94,7 @@ def read_format(source: Source, headonly: bool = False, resample: float = irregu
         direction=direction,
         processed=kind[1] == "2",
         station="" if integers[7] == integers[0] else f"{integers[7]:.0f}",
-        channel=trace_headers.channel_code(1.0 / dt, direction, max(0, int(integers[8]))),
+        channel=trace_headers.channel_code(1.0 / dt, direction, number),
         start=when,
         start_is="unknown" if when is None else "earthquake",
         headonly=headonly,

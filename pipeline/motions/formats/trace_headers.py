@@ -159,7 +159,7 @@ def seed_orientation(channel: str) -> Orientation:
     return letters.get(channel[2]) if re.fullmatch(r"[A-Z]{2}[A-Z0-9]", channel) else None
 
 
-def channel_code(rate: float, direction: Orientation, number: int) -> str:
+def channel_code(rate: float, direction: Orientation, number: int | None) -> str:
     """Return a SEED code for an accelerometer: Z, N and E where the orientation says so, else the channel's number.
 
     Parameters
@@ -168,14 +168,17 @@ def channel_code(rate: float, direction: Orientation, number: int) -> str:
         Samples per second.
     direction : float, str or None
         As `orientation` returns it.
-    number : int
-        Of the channel; its last digit is used.
+    number : int or None
+        Of the channel; its last digit is used.  None where a file of one channel has none: 1 for what points more to
+        the north or south and 2 to the east or west, as SEED numbers them, so that two files of a station differ.
 
     Returns
     -------
     str
         Three letters.
     """
+    if number is None:
+        number = 1 if not isinstance(direction, float) or not 45.0 <= direction % 180.0 < 135.0 else 2
     band = "H" if rate >= 80.0 else "B"
     letters: dict[Orientation, str] = {"up": "Z", "down": "Z", 0.0: "N", 90.0: "E"}
     return f"{band}N{letters.get(direction) or number % 10}"

@@ -107,7 +107,7 @@ def _channel(lines: Lines, top: int, headonly: bool, resample: float) -> tuple[A
         processed=False,
         station=_station(text),
         location=f"{number:02d}",
-        channel=trace_headers.channel_code(1.0 / step, direction, number),
+        channel=trace_headers.channel_code(1.0 / step, direction, number if marked else None),
         start=when if when is None or start_is == "earthquake" else when + float(times[0]),
         start_is=start_is,
         headonly=headonly,

@@ -41,8 +41,11 @@ def volume1(
     return joined(lines)
 
 
-def usc2(components: tuple[str, ...] = ("N08W",)) -> bytes:
-    """Volume 2 of the USC: ACC, VEL and DIS behind 25 lines, which end by nothing."""
+def usc2(components: tuple[str, ...] = ("N08W",), every: tuple[int, ...] = (1, 1, 1), unit: bool = True) -> bytes:
+    """Volume 2 of the USC: ACC, VEL and DIS behind 25 lines, which end by nothing.
+
+    Its older files hold every second velocity and every fifth displacement, or none of them, and no word on the unit.
+    """
     lines: list[str] = []
     for name in components:
         lines += [
@@ -54,9 +57,11 @@ def usc2(components: tuple[str, ...] = ("N08W",)) -> bytes:
             "PEAK DISPLACEMENT =     1.50000      CMS     AT     .000   SEC.", *["text"] * 5,
         ]  # fmt: skip
         lines += fortran(np.zeros(100, int), 16, "{:5d}") + fortran(np.zeros(100), 8, "{:10.3f}")
-        for kind, size, unit in (("ACC", 100.0, "CM/SEC/SEC"), ("VEL", 9.0, "CM/SEC"), ("DIS", 1.5, "CM")):
-            lines.append(f"    60 POINTS OF {kind} DATA EQUALLY SPACED AT   .010  SEC.  IN UNITS {unit}")
-            lines += fortran(size * tone(), 8, "{:10.3f}")
+        kinds = (("ACC", 100.0, "CM/SEC/SEC"), ("VEL", 9.0, "CM/SEC"), ("DIS", 1.5, "CM"))
+        for (kind, size, units), n in zip(kinds, every, strict=False):
+            said = f"  IN UNITS {units}" if unit else ""
+            lines.append(f"{60 // n:6d} POINTS OF {kind} DATA EQUALLY SPACED AT   {DT * n:.3f}  SEC.{said}")
+            lines += fortran(size * tone()[::n], 8, "{:10.3f}")
     return joined(lines)
 
 

@@ -109,6 +109,10 @@ def test_cut_off_at_each_line_and_within(name):
                 elif name in {"at2", "at2-old", "esm", "nsmn", "csmnc"}:
                     # Numbers of no fixed width: that the last one of all was cut in two cannot be seen.
                     assert trace.data[:-1].tolist() == full.data[:-1].tolist()
+                elif name == "csmip-usc-v2":
+                    # Nothing closes a channel, and some agency files end after the acceleration.
+                    assert trace.data.tolist() == full.data.tolist()
+                    assert all(full.stats.kouros[key] == value for key, value in trace.stats.kouros.items())
                 else:
                     assert trace.data.tolist() == full.data.tolist()
                     assert trace.stats.kouros == full.stats.kouros

@@ -263,3 +263,33 @@ def test_an_unknown_file_is_told_what_is_read(written):
 def test_unknown_files_that_are_no_text(written, content, words):
     with pytest.raises(MotionError, match=words):
         open_traces(written(content), [])
+
+
+@pytest.mark.parametrize("every", [(1,), (1, 2, 5), (1, 1, 1)])
+@pytest.mark.parametrize("unit", [True, False])
+def test_usc_volume_2_as_its_older_files_are(every, unit):
+    """The unit of the printed peak, channels that nothing closes, series that are coarser than their acceleration."""
+    read = traces(national.usc2(("N08W", "UP"), every, unit), "csmip")
+    assert [trace.stats.kouros.orientation for trace in read] == [352.0, "up"]
+    for trace in read:
+        said = trace.stats.kouros
+        assert np.abs(trace.data - 100.0 * tone()).max() <= 5e-4
+        assert (said.units, said.processed, said.peak.acceleration) == ("cm/s2", True, 1.0)
+        assert ("velocity" in said) == (every == (1, 1, 1)) == ("displacement" in said)
+        assert ("longer step" in said.get("notes", "")) == (every == (1, 2, 5))
+
+
+def test_usc_volume_2_without_any_word_on_its_unit():
+    with pytest.raises(FormatError, match=r"does not say the unit"):
+        traces(national.usc2(("UP",), (1,), unit=False).replace(b"PEAK ACC", b"HIGH ACC"), "csmip")
+
+
+@pytest.mark.parametrize("write", [national.usc2, lambda names: national.volume1("usc", names)])
+def test_files_of_one_channel_each_differ_by_what_they_are_called(tmp_path, write):
+    """The USC's files have no number of a channel: their three are one record of a station, whatever the azimuths."""
+    for azimuths in (("N08W", "S82W"), ("N45E", "N45W"), ("S30E", "N60E")):
+        codes = []
+        for name in (*azimuths, "UP"):
+            (tmp_path / "record").write_bytes(write((name,)))
+            codes += [trace.stats.channel for trace in open_traces(tmp_path / "record", [])]
+        assert sorted(code[-1] for code in codes) == ["1", "2", "Z"]

@@ -32,7 +32,9 @@ CASES = {
     "csmip channel": (hand.csmip(channels=("",)).replace(b"Chan  1:", b"Channel"), 25, "'Chan  1: 360 Deg'"),
     "csmip no data": (hand.csmip(1).replace(b" Accelerogram points", b" values"), 61, "no line such as"),
     "csmip unit": (hand.csmip().replace(b"in cm/sec2", b"in ft/sec2", 1), 46, "no unit of acceleration"),
-    "csmip unit unsaid": (hand.csmip().replace(b"in cm/sec2.", b"", 1), 46, "does not say the unit"),
+    "csmip unit unsaid": (
+        hand.csmip().replace(b"in cm/sec2.", b"", 1).replace(b"Peak acc", b"High acc"), 46, "does not say the unit",
+    ),
     "csmip lengths": (hand.csmip().replace(b"60 points of vel", b"56 points of vel", 1), 55, "56 samples of 0.01 s"),
     "csmip order": (hand.csmip().replace(b"of veloc", b"of accel").replace(b"/sec.", b"/sec2."), 55, "out of order"),
     "csmip end": (hand.csmip(channels=("Up",)).replace(b"/&", b"%%"), 73, "a line of data, or '/&'"),
