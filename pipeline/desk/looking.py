@@ -18,12 +18,14 @@ from pipeline.desk.errors import NotThereError
 from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.object_facts import ObjectFacts, cells, vocabulary
 from pipeline.desk.run_facts import SHOWN, ListedObject, RunFacts
+from pipeline.desk.words import class_told, name_told, word_told
 from pipeline.records import DecisionKind, Support, in_force
 from pipeline.report.language import _
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.errand_views import number, spanned
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.views import STATES, DecisionView, State
+from pipeline.report.text import words
 from pipeline.report.units import Units
 from pipeline.tables import table
 
@@ -96,7 +98,8 @@ def object_context(
         "recorded": _recorded(facts, run), "problem": problem, "typed": typed,
         "section": section or query.get("open", ""), "saved": query.get("saved", ""),
         "measures": installable, "measure": measure,
-        "parameters": parameters(asked, facts, measure), "classes": object_classes(),
+        "parameters": parameters(asked, facts, measure), "classes": sorted(object_classes(), key=class_told),
+        "class_told": class_told, "word_told": word_told,
         "findings": _findings(facts), "neighbours": _beside(run, listed), "several_levels": run.several,
     }  # fmt: skip
 
@@ -144,12 +147,16 @@ def _recorded(facts: ObjectFacts, run: RunFacts) -> list[tuple[str, str, str]]:
     """Return the record of an object: what, its value in the reader's units, and who says so."""
     item, notes = facts.item, {of.field: of for of in facts.item.provenance}
     texts = ("object_name", "classification", "medium", "dimensions", "gallery", "case")
-    out = [(name.replace("_", " "), str(getattr(item, name)), "") for name in texts if getattr(item, name)]
+    out = [(name_told(name), str(getattr(item, name)), "") for name in texts if getattr(item, name)]
     for one in measurables():
         value = getattr(item, one.field, None)
         if value is None:
             continue
-        shown = str(value) if vocabulary(one.field) else run.units.text(value, "" if one.unit == "-" else one.unit)
+        shown = (
+            word_told(one.field, value)
+            if vocabulary(one.field)
+            else run.units.text(value, "" if one.unit == "-" else one.unit)
+        )
         of = notes.get(one.field)
         out.append((labels()[one.field], shown, "; ".join(filter(None, (of.written, of.note))) if of else ""))
     return out
@@ -310,7 +317,8 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
     return {
         "asked": run.rule_questions,
         "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house],
-        "classes": sorted(run.classes), "counts": run.classes,
+        "classes": sorted(run.classes, key=class_told), "class_told": class_told, "word_told": word_told,
+        "counts": run.classes,
         "galleries": sorted(run.galleries), "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
         "states": states, "unit": cell_unit(QUANTITIES[states][0], run.units) if states in QUANTITIES else "",
         "supports": tuple(Support), "about": len(about), "typed": given, "problem": problem,
@@ -328,8 +336,8 @@ def _rule_words(rule: HouseRule, units: Units) -> tuple[str, str, str]:
             shown = units.text(value.best, unit)
             shown += f" ({units.bare(value.low, value.high, unit)})" if value.low != value.high else ""
         else:
-            shown = str(value)
-        told.append(f"{name.removesuffix('_m')}: {shown}".replace("_", " "))
+            shown = word_told(name, str(value))
+        told.append(f"{words(name)}: {shown}")
     return rule.words, ", ".join(told), rule.source
 
 
@@ -341,5 +349,5 @@ def house_fields(asked: Asked) -> DeskAnswer:
 def galleries(asked: Asked) -> DeskAnswer:
     """Show all galleries with how many objects there are in each state."""
     run = asked.site.run
-    rows = [(name, run.galleries[name], run.counts[name]) for name in run.order]
+    rows = [(name, run.galleries[name], run.counts[name], run.sheets(name)) for name in run.order]
     return DeskAnswer("galleries.html", {"rows": rows, "states_of": STATES, "State": State})

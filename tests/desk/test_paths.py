@@ -67,7 +67,7 @@ def test_a_curator_finds_an_object_sees_why_and_accepts_the_risk(running: str, b
     press(browser, see(browser, ".hits a"))
     assert see(browser, "h1").text == "2.3 Vase 3"
     assert see(browser, ".lede").text
-    see(browser, "section[aria-labelledby=why] summary").click()
+    see(browser, "#why summary").click()
     assert "How likely:" in see(browser, "article.card").text
     see(browser, "#accept summary").click()
     see(browser, "#accept textarea").send_keys("The case is rebuilt in May")

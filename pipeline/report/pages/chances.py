@@ -54,7 +54,7 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         check %= {"times": local(f"{slender:.1f}")}
     unnamed = _unnamed(found)
     if unnamed:
-        check = " ".join(filter(None, (check, _("Say what it is first (kouros decide)."))))
+        check = " ".join(filter(None, (check, _("Say first what it is."))))
     classes = ", ".join(map(_if_class, found.classes))
     return ChanceView(
         _sentence(found), f"{numbers}{more}.", clean(found.level), check, _asked(assessment), classes, unnamed
