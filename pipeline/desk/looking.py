@@ -8,7 +8,7 @@ from typing import Any
 
 from pipeline.analysis.classify import object_classes
 from pipeline.analysis.house.questions import VOCABULARIES
-from pipeline.analysis.house.rule import QUANTITIES, HouseRule, Span
+from pipeline.analysis.house.rule import CRITERIA, QUANTITIES, HouseRule, Span
 from pipeline.analysis.survey import field_asked, measurables
 from pipeline.collection.inventory import items_named
 from pipeline.desk.asking import Asked, DeskAnswer, page_number
@@ -18,9 +18,10 @@ from pipeline.desk.errors import NotThereError
 from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.object_facts import ObjectFacts, cells, vocabulary
 from pipeline.desk.run_facts import SHOWN, ListedObject, RunFacts
-from pipeline.desk.words import class_told, name_told, word_told
+from pipeline.desk.words import name_told, word_told
 from pipeline.records import DecisionKind, Support, in_force
 from pipeline.report.language import _
+from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.errand_views import number, spanned
 from pipeline.report.pages.notes import page_notes
@@ -30,6 +31,8 @@ from pipeline.report.units import Units
 from pipeline.tables import table
 
 _ERRANDS_SHOWN = 100
+_NAMED = 3
+"""Of the objects, galleries or materials that a rule is for: how many the list of rules names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +101,8 @@ def object_context(
         "recorded": _recorded(facts, run), "problem": problem, "typed": typed,
         "section": section or query.get("open", ""), "saved": query.get("saved", ""),
         "measures": installable, "measure": measure,
-        "parameters": parameters(asked, facts, measure), "classes": sorted(object_classes(), key=class_told),
-        "class_told": class_told, "word_told": word_told,
+        "parameters": parameters(asked, facts, measure), "classes": sorted(object_classes(), key=class_title),
+        "class_told": class_title, "word_told": word_told,
         "findings": _findings(facts), "neighbours": _beside(run, listed), "several_levels": run.several,
     }  # fmt: skip
 
@@ -317,7 +320,7 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
     return {
         "asked": run.rule_questions,
         "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house],
-        "classes": sorted(run.classes, key=class_told), "class_told": class_told, "word_told": word_told,
+        "classes": sorted(run.classes, key=class_title), "class_told": class_title, "word_told": word_told,
         "counts": run.classes,
         "galleries": sorted(run.galleries), "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
         "states": states, "unit": cell_unit(QUANTITIES[states][0], run.units) if states in QUANTITIES else "",
@@ -338,7 +341,10 @@ def _rule_words(rule: HouseRule, units: Units) -> tuple[str, str, str]:
         else:
             shown = word_told(name, str(value))
         told.append(f"{words(name)}: {shown}")
-    return rule.words, ", ".join(told), rule.source
+    values = {name: getattr(rule, name) for name in CRITERIA if getattr(rule, name)}
+    values |= {"object_class": tuple(map(class_title, rule.object_class))} if rule.object_class else {}
+    about = [" / ".join(map(str, those[:_NAMED])) + (" …" if len(those) > _NAMED else "") for those in values.values()]
+    return "; ".join(about), ", ".join(told), rule.source
 
 
 def house_fields(asked: Asked) -> DeskAnswer:

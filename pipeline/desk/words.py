@@ -2,9 +2,8 @@
 
 from functools import cache
 
-from pipeline.analysis.classify import object_classes
 from pipeline.report.language import said
-from pipeline.report.text import clean, words
+from pipeline.report.text import words
 from pipeline.tables import table
 
 _TABLES = {"hanging": "hangings", "furniture": "furniture", "mount": "mounts"}
@@ -23,11 +22,6 @@ def word_told(field: str, word: str) -> str:
     """
     title = _titles(field).get(str(word))
     return said(title) if title else words(str(word))
-
-
-def class_told(name: str) -> str:
-    """Return a class of objects by its title, such as "Painting or framed work"."""
-    return said(clean(object_classes().get(name, name.replace("_", " "))))
 
 
 def name_told(name: str) -> str:
