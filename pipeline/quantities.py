@@ -1,5 +1,6 @@
 """Names, units, limits and the one value of g.  SI everywhere inside; other units exist at the borders only."""
 
+import re
 from dataclasses import dataclass
 from math import inf
 from numbers import Real
@@ -8,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.errors import InputError
+
+_DIGITS = re.compile(r"\d+")
 
 G = 9.80665
 """Standard acceleration of gravity [m/s2]."""
@@ -227,3 +230,9 @@ def some_error(error: object) -> float:
     if not some > 0.0:
         raise InputError(f"error must be a number above 0, not {error!r}")
     return some
+
+
+def sorting_key(number: str) -> str:
+    """Return what sorts object numbers as people count: 1913.3 before 1913.20, whatever the case of letters."""
+    # The length goes before the digits, so that 20 comes behind 3; nothing is lost of a number of any length.
+    return _DIGITS.sub(lambda found: f"{len(found[0].lstrip('0')):04d}{found[0].lstrip('0')}", number.casefold())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, overload
@@ -78,6 +78,11 @@ class Listing(Sequence[Listed]):
         keys = [("on_display", "descending"), *((name, "ascending") for name in ("gallery", "case", "object_number"))]
         table = self.table.set_column(3, "on_display", pc.cast(self.table.column("on_display"), "int8"))
         return Listing(self.table.take(pc.sort_indices(table, sort_keys=keys)).combine_chunks())
+
+    def by(self, key: Callable[[str], str]) -> Listing:
+        """Return the objects as a key of their numbers sorts them."""
+        numbers = self.column("object_number")
+        return Listing(self.table.take(sorted(range(len(numbers)), key=lambda at: (key(numbers[at]), numbers[at]))))
 
     def __len__(self) -> int:
         """How many objects."""

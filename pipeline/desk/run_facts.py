@@ -16,10 +16,11 @@ from pipeline.desk.errors import DeskError
 from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.workspace import Workspace
 from pipeline.planning.plan import ErrandPlan, gallery_order
+from pipeline.quantities import sorting_key
 from pipeline.records import Page, RunRecord
-from pipeline.report.files.object_list import sorting_key
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.plan_files import gathered_from
+from pipeline.report.files.walk_sheet import sheet_file
 from pipeline.report.pages.compose import page_name
 from pipeline.report.pages.describe import Sayings
 from pipeline.report.pages.views import State
@@ -189,6 +190,14 @@ class RunFacts:
             places = self._places[page.key] = load_places(self.workspace.engine, page.key)
         found = places.get(number)
         return None if found is None else (page, *found)
+
+    def sheets(self, gallery: str) -> list[str]:
+        """Return the files of the sheets to walk a gallery with, which its report has."""
+        pages = sorted(
+            (p for p in self._pages.values() if p.on_display and p.gallery == gallery), key=lambda p: p.number
+        )
+        files = [sheet_file(page_name(p.gallery, p.number)) for p in pages]
+        return [file for file in files if (self.folder / file).is_file()]
 
     @property
     def plan(self) -> ErrandPlan | None:

@@ -118,7 +118,9 @@ class RunContext:
 
         raises : ReportError for a language without a catalogue
         """
-        return PageRenderer(self.head, self.units, language(self.tongue, self.catalogues), self.paper)
+        return PageRenderer(
+            self.head, self.units, language(self.tongue, self.catalogues), self.paper, bool(self.sampling.samples)
+        )
 
 
 def motions_of(floors: Mapping[str, Floor]) -> dict[str, Motion]:

@@ -6,10 +6,14 @@ from dataclasses import dataclass
 
 from pipeline.collection.listing import Listing, Run
 from pipeline.night.floors import floor_name
+from pipeline.quantities import sorting_key
 from pipeline.settings import Settings
 
 MOST = 1_000
 """Objects on a page at most, unless one case holds more: what a browser shows at once."""
+
+STORED = 250
+"""Of what is not on display: it is looked up, and a page of it is scrolled through by hand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +38,10 @@ class PagePart:
     objects: Listing
 
 
-def paged(objects: Listing, settings: Settings, most: int = MOST) -> list[PagePart]:
+def paged(objects: Listing, settings: Settings, most: int = MOST, stored: int = STORED) -> list[PagePart]:
     """Cut a collection into pages: galleries by name, then what is not on display, floor by floor.
+
+    What is not on display is in the order of its numbers, where nothing is computed of it.
 
     Parameters
     ----------
@@ -43,8 +49,8 @@ def paged(objects: Listing, settings: Settings, most: int = MOST) -> list[PagePa
         Sorted by `listing.order`.
     settings
         Say which gallery is on which floor.
-    most
-        Objects on a page; a case is not cut.
+    most, stored
+        Objects on a page of a gallery, and of what is not on display; a case that is assessed is not cut.
     """
     groups: dict[tuple[bool, str], list[Run]] = {}
     for run in objects.runs:
@@ -52,15 +58,18 @@ def paged(objects: Listing, settings: Settings, most: int = MOST) -> list[PagePa
         place = run.gallery if run.on_display else floor_name(settings, run.gallery)
         groups.setdefault((not run.on_display, place), []).append(run)
     out: list[PagePart] = []
-    stored: list[tuple[str, Listing]] = []
+    away: list[tuple[str, Listing]] = []
     for absent, place in sorted(groups):
-        pieces = _pieces(objects.joined(groups[absent, place]), most)
-        if absent:
-            stored += [(place, piece) for piece in pieces]
-        else:
-            floor = floor_name(settings, place)
+        members = objects.joined(groups[absent, place])
+        if not absent:
+            floor, pieces = floor_name(settings, place), _pieces(members, most)
             out += [PagePart(place, True, floor, n, len(pieces), piece) for n, piece in enumerate(pieces, 1)]
-    out += [PagePart("", False, floor, n, len(stored), piece) for n, (floor, piece) in enumerate(stored, 1)]
+        elif settings.display.stores:
+            away += [(place, piece) for piece in _pieces(members, stored)]
+        else:
+            members = members.by(sorting_key)
+            away += [(place, members[at : at + stored]) for at in range(0, len(members), stored)]
+    out += [PagePart("", False, floor, n, len(away), piece) for n, (floor, piece) in enumerate(away, 1)]
     return out
 
 

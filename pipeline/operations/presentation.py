@@ -1,4 +1,4 @@
-"""The reader's units, language and paper, as the settings ask for them."""
+"""How a report is written, as the settings ask for it: units, language, paper, and whether there is a plan."""
 
 from typing import TypedDict
 
@@ -14,15 +14,16 @@ class Presentation(TypedDict):
     units: Units
     language: Language
     paper: str
+    planned: bool
 
 
 def presentation(settings: Settings) -> Presentation:
-    """Return the units, the language and the paper that the settings ask for.
+    """Return the units, the language and the paper that the settings ask for, and whether they ask for a plan.
 
     Parameters
     ----------
     settings : Settings
-        Of which `[report]` counts.
+        Of which `[report]` and `[likelihood]` count.
 
     Returns
     -------
@@ -36,7 +37,12 @@ def presentation(settings: Settings) -> Presentation:
     """
     asked = settings.report
     folder = settings.path(asked.catalogues) if asked.catalogues else None
-    return {"units": Units(length=asked.length), "language": language(asked.language, folder), "paper": asked.paper}
+    return {
+        "units": Units(length=asked.length),
+        "language": language(asked.language, folder),
+        "paper": asked.paper,
+        "planned": bool(settings.likelihood.samples),
+    }
 
 
 def terms_of(workspace: Workspace) -> PlanTerms | None:

@@ -8,6 +8,7 @@ from math import fsum
 from pipeline.analysis.stakes import expected_loss
 from pipeline.mitigate.search import ANCHORED
 from pipeline.planning.efforts import Efforts, EffortSpan
+from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Recommendation
 
 
@@ -185,12 +186,15 @@ def errands_of(found: Iterable[Advised], efforts: Efforts, order: Mapping[str, i
         if one.anchored:
             fastened.setdefault((one.gallery, one.case, efforts.anchor, False, alone), []).append(one)
     keys = [*groups, *(key for key in fastened if key not in groups)]
-    members = {key: sorted(groups.get(key) or fastened[key], key=lambda one: one.object_number) for key in keys}
+    members = {
+        key: sorted(groups.get(key) or fastened[key], key=lambda one: sorting_key(one.object_number)) for key in keys
+    }
 
     def walked(key: _Key) -> tuple[int, str, str, str, bool, str, str]:
         gallery, case, measure, anchored, alone = key
         # What is in no case is by itself; its furniture is fastened before what is done on it.
-        return order.get(gallery, len(order)), gallery, case, alone, anchored, members[key][0].object_number, measure
+        first = sorting_key(members[key][0].object_number)
+        return order.get(gallery, len(order)), gallery, sorting_key(case), sorting_key(alone), anchored, first, measure
 
     keys.sort(key=walked)
     at = {key: place for place, key in enumerate(keys)}

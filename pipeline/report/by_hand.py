@@ -20,9 +20,9 @@ Write = Callable[[str, float | None, str], str]
 def by_hand(units: Units) -> Write:
     """Return what writes the numbers of measures for a reader.
 
-    A force is written as the weight that it is, in kilograms or pounds, and a moment as such a weight at an arm of a
-    metre or a foot: nobody in a gallery thinks in newtons.  Where lengths are in inches or feet they are in eighths of
-    an inch, and masses in pounds.  The checks of a measure keep newtons.
+    A force is written as the weight that it is, in kilograms (grams below one) or pounds, and a moment as such a weight
+    at an arm of a metre or a foot: nobody in a gallery thinks in newtons.  Where lengths are in inches or feet they are
+    in eighths of an inch, and masses in pounds.  The checks of a measure keep newtons.
 
     Parameters
     ----------
@@ -41,6 +41,8 @@ def by_hand(units: Units) -> Write:
             return inches(value, up=up)
         if unit == "kg" and pounds:
             return f"{_weight(value / mass, up=up)}{_THIN}{unit_of_mass}"
+        if unit == "N" and not pounds and 0.0 < value < G:
+            return f"{_weight(1e3 * value / G, up=up)}{_THIN}g"
         if unit == "N":
             return f"{_weight(value / (mass * G), up=up)}{_THIN}{unit_of_mass}"
         if unit == "N m":

@@ -18,8 +18,9 @@ from pipeline.mitigate.rows import STORED
 from pipeline.mitigate.search import ANCHORED, AT_BEST, ONLY_HERE, SIZED
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
-from pipeline.records import Item
+from pipeline.records import Anchorage, Item, Support
 from pipeline.report.text import bare
+from pipeline.tables import table
 from pipeline.tables.assumed import assumed
 
 _Found = tuple[int, str, str, list[str]]
@@ -85,5 +86,8 @@ def _names() -> Iterator[str]:
     quantities += [q for measure in MEASURES for q in measure.parameters]
     names = [field.name for field in fields(Item)] + [q.name for q in quantities] + [m.name for m in MODELS]
     names += [name for measure in MEASURES for name in (measure.name, *measure.gives)]
-    names += [STORED, *object_classes()]
+    names += [STORED, *object_classes(), *Support, *Anchorage]
     yield from (bare(name) for name in names)
+    # Whoever chooses one of them at the desk reads its title.
+    yield from object_classes().values()
+    yield from (row["title"] for name in ("hangings", "furniture", "mounts") for row in table(name))

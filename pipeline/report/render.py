@@ -40,7 +40,7 @@ def render(
     raises  : ReportError if the folder exists, or if the record cannot be shown (see `compose`)
     """
     head = replace(record, assessments=(), wishes=None, spacings=())
-    renderer = PageRenderer(head, units or Units(), language or Language(), paper)
+    renderer = PageRenderer(head, units or Units(), language or Language(), paper, terms is not None)
     with ReportWriter(Path(folder), renderer) as writer:
         return draw_all(writer, head, pages_of(record), changes, doubts=doubts, terms=terms)
 

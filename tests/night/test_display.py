@@ -3,6 +3,7 @@
 import csv
 import json
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ from lxml import html
 from pipeline.cli.console import summary_lines
 from pipeline.collection.database import open_database
 from pipeline.mitigate.catalogue import own_catalogue
+from pipeline.night import scheduler
+from pipeline.night.paging import paged
 from pipeline.night.run import Selection, run
 from pipeline.operations.run_summary import Summary
 from pipeline.operations.workspace import open_workspace
@@ -74,9 +77,10 @@ def test_what_is_not_on_display_is_counted_and_named_and_nothing_else(tmp_path: 
     objects = {row["object_number"]: (row["state"], row["on_display"]) for row in table(summary, "objects.csv")}
     left = ("not on display", "false")
     assert objects == {"1": ("act", "true"), "2": left, "3": left, "4": left}
-    said = "ot on display: 3 objects, not assessed (set [display] stores = true)"
-    assert said in words(summary)
-    assert said in words(summary, "not-on-display.html")
+    for page in ("index.html", "not-on-display.html"):
+        assert "3 objects are not on display, and were not assessed." in words(summary, page)
+        assert "set stores = true in [display]" in words(summary, page)
+    said = "not on display: 3 objects, not assessed (set [display] stores = true)"
     assert said in "\n".join(summary_lines(summary))
     assert "none is left out" not in words(summary)
     assert summary.report is not None
@@ -85,6 +89,29 @@ def test_what_is_not_on_display_is_counted_and_named_and_nothing_else(tmp_path: 
     assert "overturns" not in words(summary, "not-on-display.html")
     # Nor is anything kept of them but what they are.
     assert all(a.aside and not a.findings and not a.fragilities for n, a in found(tmp_path).items() if n != "1")
+
+
+def test_pages_of_what_is_stored_lead_to_each_other_and_old_ones_are_gone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(scheduler, "paged", partial(paged, stored=2))
+    stored = [f"{n},Cellar,Vase,0.3,0.2,0.2,no" for n in range(8, 29)]
+
+    def pages(count: int) -> dict[str, html.HtmlElement]:
+        summary = run(museum(tmp_path, [SHOWN, *stored[:count]]), SILENT)
+        assert summary.report is not None
+        return {file.name: html.parse(str(file)).getroot() for file in summary.report.parent.glob("not-on-display*")}
+
+    shown = pages(21)
+    names = ["not-on-display.html", *(f"not-on-display-{n}.html" for n in range(2, 12))]
+    assert set(shown) == set(names)
+    listed = [row.findtext("bdi") for name in names for row in shown[name].xpath("//table//tbody/tr/th")]
+    assert listed == [str(n) for n in range(8, 29)]
+    middle = shown["not-on-display-5.html"].xpath("//p[contains(@class, 'turn')]")[0]
+    assert middle.xpath("*/text()") == ["1", "…", "3", "4", "5", "6", "7", "…", "11"]
+    assert [a.get("href") for a in middle.iterfind("a")] == [names[n - 1] for n in (1, 3, 4, 6, 7, 11)]
+    assert middle.find("a").get("title") == "8 – 9"
+    assert set(pages(3)) == set(names[:2])
 
 
 def test_stores_are_a_section_of_their_own_and_never_mixed_in(tmp_path: Path) -> None:

@@ -16,10 +16,10 @@ from pipeline.collection.database import open_database
 from pipeline.collection.listing import Listed, Listing, order
 from pipeline.errors import DamageWarning
 from pipeline.night import scheduler
-from pipeline.night.paging import MOST, paged
+from pipeline.night.paging import MOST, STORED, paged
 from pipeline.night.run import run
 from pipeline.report.errors import ReportWarning
-from pipeline.settings import Floors, Settings, load_settings
+from pipeline.settings import DisplaySettings, Floors, Settings, load_settings
 from pipeline.store.tables import RESULT
 from tests.museum import SILENT, found, museum_of, night, vases, write_collection
 
@@ -186,13 +186,13 @@ def test_pages_are_cut_as_by_hand(seed: int) -> None:
         one = listed(n, case, f"Room {random.randrange(3)}")
         objects.append(one._replace(on_display=random.random() < 0.5))
     objects.sort(key=order)
-    settings = Settings(floors=Floors({"upper": ("Room 1",)}))
-    parts = paged(Listing.of(objects), settings, most=30)
+    settings = Settings(floors=Floors({"upper": ("Room 1",)}), display=DisplaySettings(stores=True))
+    parts = paged(Listing.of(objects), settings, most=30, stored=7)
     groups: dict[tuple[bool, str], list[Listed]] = {}
     for one in objects:
         upper = "upper" if one.gallery == "Room 1" else ""
         groups.setdefault((not one.on_display, one.gallery if one.on_display else upper), []).append(one)
-    by_hand = {group: walked(members, 30) for group, members in groups.items()}
+    by_hand = {group: walked(members, 7 if group[0] else 30) for group, members in groups.items()}
     expected = [piece for group in sorted(by_hand) for piece in by_hand[group]]
     assert [list(part.objects) for part in parts] == expected
     stored = sum(len(pieces) for (absent, _), pieces in by_hand.items() if absent)
@@ -209,6 +209,17 @@ def test_a_small_gallery_is_one_page_and_what_is_stored_shares_pages() -> None:
         ("Store", True, 1),
         ("", False, 30),
     ]
+
+
+def test_what_is_stored_is_cut_by_count_in_the_order_of_its_numbers() -> None:
+    """As people count, whatever the place and the case."""
+    numbers = [f"{year}.{n}" for year in (98, 1913, 2016) for n in range(1, 201)]
+    stored = [Listed(number, f"Store {at % 3}", f"case {at % 7}", False, "", "") for at, number in enumerate(numbers)]
+    parts = paged(Listing.of(sorted(stored, key=order)), Settings())
+    assert [(part.number, part.of, len(part.objects)) for part in parts] == [
+        (1, 3, STORED), (2, 3, STORED), (3, 3, len(numbers) - 2 * STORED)
+    ]  # fmt: skip
+    assert [one.object_number for part in parts for one in part.objects] == numbers
 
 
 def test_the_pages_of_a_cut_gallery_lead_to_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

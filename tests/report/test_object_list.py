@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from lxml import etree
 from selenium.webdriver.common.by import By
 
-from pipeline.report.files.object_list import LISTED, listed_pages, listed_part, sorting_key
+from pipeline.quantities import sorting_key
+from pipeline.report.files.object_list import LISTED, listed_pages, listed_part
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.report_writer import ReportWriter
 from pipeline.report.language import Language

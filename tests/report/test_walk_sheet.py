@@ -184,17 +184,17 @@ def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
     assert "clearance 20\u202fcm" in metric
     assert "movement" not in metric
     # 100 N are the weight of 10.197 kg, 50 N m that of 5.099 kg at 1 m; of both less is too little.
-    assert "force 11\u202fkg" in metric
+    assert "to hold 11\u202fkg" in metric
     assert "moment" not in metric
     alone = replace(one, parameters={"moment": 50.0}, sentence="{moment}")
     assert numbers_to_set(alone, Units("cm")) == "moment 5.1\u202fkg at an arm of 1\u202fm"
     # 0.2 m are 7.874 in, 100 N 22.48 lb, 50 N m 36.88 ft lb and 5 kg 11.02 lb; of the first three less is too little.
-    imperial = "clearance 7 ⅞ in; force 23\u202flb; mass 11\u202flb"
+    imperial = "clearance 7 ⅞ in; to hold 23\u202flb; mass 11\u202flb"
     assert numbers_to_set(alone, Units("in")) == "moment 37\u202flb at an arm of 1 ft"
     assert numbers_to_set(one, Units("in")) == numbers_to_set(one, Units("ft")) == imperial
-    assert numbers_to_set(advice(force=(2.0 * 0.45359237 * G, "N")), Units("in")) == "force 2\u202flb"
+    assert numbers_to_set(advice(force=(2.0 * 0.45359237 * G, "N")), Units("in")) == "to hold 2\u202flb"
     # Three digits above a hundred, the last one up: 1,234 N are 125.83 kg.
-    assert numbers_to_set(advice(force=(1234.0, "N")), Units("cm")) == "force 126\u202fkg"
+    assert numbers_to_set(advice(force=(1234.0, "N")), Units("cm")) == "to hold 126\u202fkg"
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from typing import Any
 
 from jinja2 import Environment
 
+from pipeline.quantities import sorting_key
 from pipeline.report.pages.environment import fill
 
 LISTED = "listed.arrow"
@@ -21,7 +22,6 @@ SHOWN = 5_000
 """Rows on a page of the list, which a phone shows and searches at once."""
 
 _FILE = re.compile(rf"{OBJECTS}(?:-\d+)?\.html")
-_DIGITS = re.compile(r"\d+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +31,6 @@ class ListPage:
     file: str
     first: str
     last: str
-
-
-def sorting_key(number: str) -> str:
-    """Return what sorts object numbers as people count: 1913.3 before 1913.20, whatever the case of letters."""
-    # The length goes before the digits, so that 20 comes behind 3; nothing is lost of a number of any length.
-    return _DIGITS.sub(lambda found: f"{len(found[0].lstrip('0')):04d}{found[0].lstrip('0')}", number.casefold())
 
 
 def is_list_file(name: str) -> bool:

@@ -52,12 +52,14 @@ class PageRenderer:
 
     head  : the run without its objects, with all its charts and motions
     paper : of the sheets to walk with, "A4" or "Letter"
+    planned : whether the report has a plan, to which its pages lead
     """
 
     head: RunRecord
     units: Units
     language: Language
     paper: str = "A4"
+    planned: bool = False
 
     def draw(
         self,
@@ -109,7 +111,7 @@ class PageRenderer:
             head = page_head(self.head, page)
             context: dict[str, Any] = {"museum": head, "units": self.units, "State": State}
             context |= {"here": "gallery", "gallery": gallery, "sheet": sheet_file(gallery.page.file)}
-            context["pictured"] = bool(photos)
+            context |= {"pictured": bool(photos), "planned": self.planned}
             if gallery.counts.aside:
                 text = fill(self._environment, "aside.html", context)
             else:
@@ -138,7 +140,7 @@ class PageRenderer:
         """What all pages say of the run and how they say it, as one digest."""
         head = self.head
         said = (
-            repr(self.units), self.paper, self.language.code, self.language.digest, head.museum,
+            repr(self.units), self.paper, self.planned, self.language.code, self.language.digest, head.museum,
             head.settings.get("credit"), head.version, head.demonstration, self._value_per_c,
             [(m.hash, m.name, m.level, m.floor, m.approved_by, m.approved_on) for m in head.motions],
             sorted(head.charts),

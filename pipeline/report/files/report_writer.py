@@ -284,6 +284,7 @@ class ReportWriter:
         with speaking(self.renderer.language):
             shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
             context: dict[str, Any] = {"museum": shown, "here": OBJECTS, "pages": pages}
+            context["planned"] = self.renderer.planned
             context |= script_of(OBJECTS)
             env = environment(self.renderer.language)
             for number, (page, own) in enumerate(zip(pages, rows, strict=True), 1):
@@ -304,7 +305,7 @@ class ReportWriter:
             self._files[table] = sum_of(self._partial / table)
             shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
             context: dict[str, Any] = {"museum": shown, "reading": reading_view(head.settings), "listed": listed}
-            context |= {"here": "reading", "units": self.renderer.units}
+            context |= {"here": "reading", "units": self.renderer.units, "planned": self.renderer.planned}
             for number, page in enumerate(listed.pages, 1):
                 text = fill(environment(language), f"{READING}.html", context | {"number": number})
                 self._write(page, text.encode())

@@ -21,9 +21,9 @@ PAPERS = {"A4": (595.28, 841.89), "Letter": (612.0, 792.0)}
 _DRAWING = Lock()
 """Fonts of reportlab are for one document at a time."""
 
-_MARGIN, _SIZE, _LEADING, _PAD = 30.0, 7.5, 9.0, 3.0
-_LEAST = 18.0
-"""Height of a line in points, 6.4 mm: what people can write in."""
+_MARGIN, _SIZE, _LEADING, _PAD = 28.0, 7.5, 8.4, 2.4
+_LEAST = 13.2
+"""Height of a line in points, 4.7 mm: what people write numbers in on squared paper."""
 _PICTURE = 34.0
 """Side of the square of a picture in points, 12 mm."""
 _LINES = 40
@@ -32,7 +32,9 @@ _MOST = 700
 """Characters of a text at most, more than an object number can have."""
 _ROW = 120
 """Characters of a line at most: no column holds as many."""
-_FOOT = 26.0
+_REST = 12
+"""Lines at most of the numbers of objects that need nothing."""
+_FOOT = 12.0
 _GREY = 0.42
 
 
@@ -50,6 +52,7 @@ class _Line:
     """A row of the sheet ready to be drawn: the lines of each text, and its height in points.
 
     band  : the heading of a part, which stands in place of a row
+    text  : lines across the whole sheet, which stand in place of a row
     photo : the file of a picture, "" for none
     """
 
@@ -58,6 +61,7 @@ class _Line:
     ask: tuple[str, ...] = ()
     band: str = ""
     photo: str = ""
+    text: tuple[str, ...] = ()
 
 
 def sheet_file(page: str) -> str:
@@ -134,13 +138,13 @@ class _Sheet:
             _Column("", 16.0 + (_PICTURE + _PAD if self._images else 0.0), 0),
             _Column(_("Object"), 78.0, _LINES),
             _Column("", 0.0, 3),
-            _Column(_("What to do"), 112.0, 3),
-            _Column(_("Set to"), 98.0, 4),
+            _Column(_("What to do"), 98.0, 3),
+            _Column(_("Set to"), 115.0, 4),
             _Column(_("Measured"), 62.0, 2),
             _Column(_("Initials"), 36.0, 0),
             _Column(_("Date"), 38.0, 0),
         ]
-        fixed[2] = _Column(_("Title"), self._width - sum(one.width for one in fixed), 3)
+        fixed[2] = _Column(_("Title"), self._width - sum(one.width for one in fixed), 2)
         return tuple(fixed)
 
     def drawn(self) -> bytes:
@@ -187,7 +191,15 @@ class _Sheet:
             (_("To measure: it may change what is decided"), self._view.measure),
         ):
             if rows:
-                out += [_Line((), 16.0, band=title), *map(self._line, rows)]
+                out += [_Line((), 14.0, band=title), *map(self._line, rows)]
+        for phrase, numbers in (
+            (_("Cannot be assessed yet: %(numbers)s."), self._view.unknown),
+            (_("Nothing to do now for: %(numbers)s."), self._view.left),
+        ):
+            if numbers:
+                text = phrase % {"numbers": ", ".join(numbers)}
+                lines = self._wrapped(text, SANS, self._width - 2.0 * _PAD, _REST, _REST * _ROW * 2)
+                out.append(_Line((), len(lines) * _LEADING + 2.0 * _PAD, text=lines))
         return out
 
     def _line(self, row: WalkRow) -> _Line:
@@ -209,14 +221,14 @@ class _Sheet:
         self._lacks |= LACKING in shown and LACKING not in text
         return shown
 
-    def _wrapped(self, text: str, font: str, width: float, most: int) -> tuple[str, ...]:
+    def _wrapped(self, text: str, font: str, width: float, most: int, letters: int = _MOST) -> tuple[str, ...]:
         """Cut a text into lines of a width in points, an ellipsis where there are more than so many."""
 
         def fits(piece: str) -> bool:
             return width_of(piece, font, _SIZE) <= width
 
         lines, line = [], ""
-        for word in self._fit(plain(text)[:_MOST]).split():
+        for word in self._fit(plain(text)[:letters]).split():
             joined = f"{line} {word}" if line else word
             if fits(joined):
                 line = joined
@@ -273,9 +285,13 @@ class _Sheet:
         if line.band:
             pdf.setFillGray(0.92)
             pdf.rect(_MARGIN, bottom, self._width, line.height, stroke=0, fill=1)
-            self._text(_MARGIN + _PAD, bottom + 5.0, line.band, BOLD, _SIZE)
+            self._text(_MARGIN + _PAD, bottom + 4.2, line.band, BOLD, _SIZE)
             return
-        pdf.rect(_MARGIN + _PAD, y - _PAD - 10.0, 9.0, 9.0)
+        if line.text:
+            for at, text in enumerate(line.text):
+                self._text(_MARGIN + _PAD, y - _PAD - 7.0 - at * _LEADING, text, SANS, _SIZE)
+            return
+        pdf.rect(_MARGIN + _PAD, y - _PAD - 8.6, 9.0, 9.0)
         if line.photo:
             self._picture(line.photo, _MARGIN + 16.0, y - _PAD)
         x = _MARGIN

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import cache
 
+from pipeline.analysis.classify import object_classes
 from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss
 from pipeline.analysis.survey import measurables, size_behind
 from pipeline.records import Assessment, Band, Harm, IfClass, Likelihood, Mount, Recommendation, Scene
@@ -54,11 +55,17 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         check %= {"times": local(f"{slender:.1f}")}
     unnamed = _unnamed(found)
     if unnamed:
-        check = " ".join(filter(None, (check, _("Say what it is first (kouros decide)."))))
+        asked = " / ".join(class_title(name) for one in found.classes for name in one.classes)
+        check = " ".join(filter(None, (check, _("Say first what it is: %(classes)s?") % {"classes": asked})))
     classes = ", ".join(map(_if_class, found.classes))
     return ChanceView(
         _sentence(found), f"{numbers}{more}.", clean(found.level), check, _asked(assessment), classes, unnamed
     )
+
+
+def class_title(name: str) -> str:
+    """Return what people call a class of objects, such as "Painting or framed work"."""
+    return said(clean(object_classes().get(name, name.replace("_", " "))))
 
 
 def _unnamed(found: Likelihood) -> bool:

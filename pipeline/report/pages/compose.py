@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
+from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Page, Photo, Recommendation, RunRecord, Tally, Urgency
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, local, ngettext, said
@@ -119,13 +120,15 @@ def compose(
     """
     describer = Describer(record, units, sayings or Sayings(record.motions, units))
     members = sorted(record.assessments, key=urgency)
+    if members and all(a.aside for a in members):
+        members.sort(key=lambda a: sorting_key(a.scene.item.object_number))
     file = page_name(page.gallery, page.number, on_display=page.on_display)
     spacings = spacing_views(record.spacings, units) if page.on_display else ()
     views = [replace(describer.object(a, file), photo=photo_view(a.scene.item, photos or {})) for a in members]
     pairs = list(zip(members, views, strict=True))
     by_state = Counter(v.state for v in views)
     unsettled = sum(bool(v.open_for) for v in views)
-    numbers = sorted(v.number for v in views)
+    numbers = sorted((v.number for v in views), key=sorting_key)
     gallery = GalleryView(
         name=clean(page.gallery) if page.on_display else "",
         page=PageView(file, page.number, page.of, *(numbers[:1] + numbers[-1:])),

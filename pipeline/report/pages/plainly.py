@@ -41,7 +41,12 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     if NAMED_FIRST in advice.sentence:
         told.append(_("Say first what it is: for another kind of object this may not be enough."))
     if AT_BEST in advice.sentence:
-        told.append(_("This may not be enough: have it weighed and its base and weakest part measured first."))
+        named = NAMED_FIRST in advice.sentence
+        told.append(
+            _("Have it weighed too, and its base and weakest part measured.")
+            if named
+            else _("This may not be enough: have it weighed and its base and weakest part measured first.")
+        )
     elif SIZED in advice.sentence:
         told.append(_("Weigh it and measure its base first."))
     return " ".join(told)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from string import Formatter
 
 from pipeline.planning.errands import deciding
+from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Recommendation
 from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, parted, said
@@ -35,7 +36,7 @@ class WalkRow:
     what : str
         What to do, in `WORDS` words at most.
     numbers : str
-        What to set, such as "clearance 14 cm"; "" for nothing.
+        What to set, such as "4 pieces; to hold 19 kg"; "" for nothing.
     ask : str
         What is worth measuring on an object to act on, "" for nothing.
     photo : str
@@ -62,12 +63,16 @@ class WalkView:
         The page of the report that it belongs to.
     act, measure : tuple of WalkRow
         No object is in both.
+    left, unknown : tuple of str
+        Numbers of the other objects: of those that need nothing now, and of those that cannot be assessed.
     """
 
     gallery: str
     page: PageView
     act: tuple[WalkRow, ...]
     measure: tuple[WalkRow, ...]
+    left: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
 
 
 def walk_view(
@@ -113,7 +118,13 @@ def walk_view(
     measure = tuple(
         _measuring(open_[anchor][1]) for anchor in dict.fromkeys(asked) if anchor in open_ and anchor not in advice
     )
-    return WalkView(name, page, act, measure)
+    told = {row.number for row in (*act, *measure)}
+    others = sorted(
+        (view for _found, view in pairs if view.number not in told), key=lambda view: sorting_key(view.number)
+    )
+    unknown = tuple(view.number for view in others if view.state is State.UNKNOWN and not view.settled)
+    left = tuple(view.number for view in others if view.number not in unknown)
+    return WalkView(name, page, act, measure, left, unknown)
 
 
 def _advice(found: Assessment, decided: Decided) -> Recommendation | None:
@@ -170,13 +181,17 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
         The reader's.
     """
     named = dict.fromkeys(name for _text, name, _form, _how in Formatter().parse(advice.sentence) if name)
-    told, write = [], by_hand(units)
+    told, write, pieces = list[str](), by_hand(units), ""
     for name in named:
         # The page has the moment too; whoever buys a clamp asks what it must hold.
         beside = name == "moment" and "force" in advice.parameters
         if name in advice.parameters and name not in _FOLLOWS and not beside:
             text = write(name, advice.parameters[name], advice.units.get(name, ""))
-            told.append(
-                _("%(times)s times its weight") % {"times": text} if name == "times" else f"{words(clean(name))} {text}"
-            )
+            if name == "size" and pieces:
+                told[-1] = f"{pieces} × {text}"
+                continue
+            pieces = text if name == "pieces" else ""
+            plainly = {"times": _("%(number)s times its weight"), "pieces": _("%(number)s pieces")}
+            plainly |= {"force": _("to hold %(number)s")}
+            told.append(plainly[name] % {"number": text} if name in plainly else f"{words(clean(name))} {text}")
     return parted(told)
