@@ -54,7 +54,7 @@ class Phrase:
 
 
 def is_label_letter(tokens: list[Token], at: int, text: str) -> bool:
-    """Say whether a letter such as the d of ".d", "(b, lid)" or "b) H. 3 cm" numbers a component: it is short for no word.
+    """Say whether a letter such as the d of ".d", "(b, lid)" or "b) H. 3 cm" numbers a component, and is no short word.
 
     Parameters
     ----------
