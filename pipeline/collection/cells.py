@@ -221,9 +221,10 @@ class Cells:
             None where it is not recorded or no known word (then with a problem).
         """
         text = texts[0].strip(_SPACE)
-        if _missing(text, column):
+        translated = _translate(column)
+        if _missing(text, column) and not (text == "" and "" in translated):
             return None
-        meaning = _translate(column).get(text.casefold(), _FLAGS.get(text))
+        meaning = translated.get(text.casefold(), _FLAGS.get(text))
         if meaning is None:
             meaning = flag_of(text, display=name == "on_display")
         if not isinstance(meaning, bool):

@@ -5,21 +5,31 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import tomlkit
+from tomlkit.items import Table
 
-from pipeline.collection.display_words import says_away
+from pipeline.collection.display_words import flag_of, says_away
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
 from pipeline.collection.guessing.names import bare
-from pipeline.collection.guessing.source import GuessNotes, columns_in, database, objects_of, source_of, workbook
-from pipeline.collection.mapping import MAPPABLE, PRESETS, load_mapping, preset_names
+from pipeline.collection.guessing.source import (
+    GuessNotes,
+    columns_in,
+    database,
+    delimited_of,
+    objects_of,
+    source_of,
+    workbook,
+)
+from pipeline.collection.mapping import MAPPABLE, PRESETS, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.registry import is_address
+from pipeline.collection.sources.tables import as_database
 from pipeline.quantities import counted
 
 MOST_REPEATED = 0.1
@@ -96,7 +106,14 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         path = Path(where)
         name = path.name
         source = source_of(path, told)
-        if source["format"] == "xlsx":
+        if source["format"] == "tables":
+            source |= delimited_of(path, told)
+            with as_database(path, source["encoding"], source["delimiter"]) as url:
+                preset, read, columns = database(url, name, table, told)
+            source |= {key: value for key, value in read.items() if key != "format"}
+            if preset is not None:
+                return _of_preset(preset, columns, told, source)
+        elif source["format"] == "xlsx":
             source, columns = workbook(path, table, told)
         elif table is not None:
             raise CollectionError(f"{name}: has neither sheets nor tables; leave --table out")
@@ -139,6 +156,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if "long" in source:
         document["source"]["long"] = source["long"]
     document["museum"] = {"name": "Our museum"}
+    if not {"gallery", "on_display"} & told.choices.keys() and "gallery" not in found:
+        _place_of_shown(found, told)
     if "on_display" not in found and "on_display" not in told.choices:
         flag = flag_among(columns, found.values())
         if flag is not None:
@@ -179,6 +198,20 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     text = tomlkit.dumps(document)
     proposal = Proposal.model_validate(document.unwrap())
     return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure))
+
+
+def _place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:
+    """Take a column called "on view" for the place, where it names a gallery for what is on view, and else nothing."""
+    shown = found.get("on_display")
+    if shown is None or not shown.filled:
+        return
+    known = [flag_of(text, display=True) for text in shown.distinct]
+    if known.count(None) > 0.5 * len(known) and (len(shown.filled) < len(shown.values) or False in known):
+        found["gallery"] = found.pop("on_display")
+        told.doubts.append(
+            f"column {shown.name!r} is taken to name the place of what is on display, such as "
+            f"{shown.filled[0][:80]!r}; what has none is not on display"
+        )
 
 
 def _chosen(
@@ -262,10 +295,14 @@ def _unique(name: str, columns: Sequence[Column]) -> Column:
     )
 
 
-def _of_preset(name: str, columns: Sequence[Column], told: GuessNotes) -> Guess:
-    """Return a preset, and what the source leaves empty of what it reads."""
-    text = (PRESETS / f"{name}.toml").read_text(encoding="utf-8")
-    proposal = load_mapping(name)
+def _of_preset(
+    name: str, columns: Sequence[Column], told: GuessNotes, source: Mapping[str, Any] | None = None
+) -> Guess:
+    """Return a preset, in the ways of another source perhaps, and what the source leaves empty of what it reads."""
+    document = tomlkit.parse((PRESETS / f"{name}.toml").read_text(encoding="utf-8"))
+    cast(Table, document["source"]).update(source or {})
+    text = tomlkit.dumps(document)
+    proposal = Proposal.model_validate(document.unwrap())
     filled = {column.name for column in columns if column.filled}
 
     def tells(*fields: str) -> bool:
@@ -284,7 +321,6 @@ def _of_preset(name: str, columns: Sequence[Column], told: GuessNotes) -> Guess:
     places = proposal.columns["gallery"].sources
     stores = list(filter(says_away, _joined(columns, places, proposal.columns["gallery"].separator)))
     if stores:
-        document = tomlkit.parse(text)
         document["display"] = {"not_on_display": stores[:MOST_STORES]}
         text = tomlkit.dumps(document)
         told.doubts.append(_said_of(stores))

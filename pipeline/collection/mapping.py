@@ -133,7 +133,9 @@ class ColumnMap(MappingPart):
         default=(), description="Numbers (in the column's own unit) or texts that mean: not recorded."
     )
     values: dict[str, StrictStr | StrictBool] = Field(
-        default_factory=dict, description="What a text of the column means; capitals and small letters count the same."
+        default_factory=dict,
+        description="What a text of the column means; capitals and small letters count the same. An empty one is an "
+        "empty cell of a flag.",
     )
     by_hand: bool = Field(
         default=False,

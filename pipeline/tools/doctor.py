@@ -106,7 +106,7 @@ def _collection(settings: Settings) -> tuple[str, str]:
     if is_address(wanted.source):
         return "ok", f"a database, mapping {wanted.mapping}; `kouros import --dry-run` asks it"
     source = settings.path(wanted.source)
-    if not source.is_file():
+    if not source.exists():
         return "wrong", f"{source} is not there; export the collection to it, or change [collection] source"
     return "ok", f"{source.name}, mapping {wanted.mapping}"
 

@@ -136,6 +136,10 @@ def test_the_decimal_mark_is_the_one_that_the_text_shows(text, decimal, value, t
         ("H. 12 cm, L. 30 cm, W. 5 cm, D. 4 cm", "the text also gives the length"),
         ("rim: 8 11/16 in. (22.1 cm)", "says no size of the object itself"),
         ("L: 12 cm; La: 5 cm; Gr: 1 cm", "the unit is believed, and not the label"),
+        ("H. 30 cm; base: 5 x 20 x 20 cm", "whether the height includes that of the base"),
+        ("総高38.2cm 口径11.5cm 底径12.4cm", "the base is wider, the diameter"),
+        ("H: 30 cm; shoulder diameter: 20 cm", "the diameter '20 cm' of 'shoulder' fills no field"),
+        ("20 x 31 cm; including handle: 27 cm", "is taken as the height, which is not said"),
         ("一尺二寸", "holds no dimension that can be read"),
     ],
 )

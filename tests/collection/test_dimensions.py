@@ -23,7 +23,7 @@ def test_units_are_those_of_the_rest_of_the_program():
 def test_no_word_means_two_things_behind_a_number():
     """A word may be a unit behind a number and a label or a foot before it; these are the ones, and no more."""
     assert {word for word in unit_words() if word in meanings()} == {
-        "in", "t", "dm", "fuß", "pied", "pie", "piede"
+        "in", "t", "dm", "fuß", "pied", "pie", "piede", "foot", "feet"
     }  # fmt: skip
 
 

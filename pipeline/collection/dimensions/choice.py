@@ -109,10 +109,10 @@ def _rank(group: list[DimensionPart], hung: bool) -> int:
         return 0 if hung else 3
     if name == "with base" or (name.startswith("with ") and DETAILS.intersection(words)):
         return 1
-    if name.startswith("overall"):
-        return 2
     if is_detail(name):
         return _LAST
+    if name.startswith("overall"):
+        return 2
     if name.startswith("without "):
         return 4
     faces = [_FACES[word] for word in words if word in _FACES]
@@ -154,7 +154,7 @@ def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
     for part in group:
         if part.dimension == "length":
             take("depth" if "width" in out else "width", part, "length, which lies in plan")
-        elif part.dimension == "thickness":
+        elif part.dimension == "thickness" and not {"height", "diameter"} <= set(out):  # of a round wall
             take("depth", part, "thickness")
         elif part.dimension == "circumference":
             take("diameter", part, "circumference divided by pi", 1.0 / pi)

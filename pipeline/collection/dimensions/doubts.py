@@ -6,6 +6,7 @@ import re
 from functools import cache
 
 from pipeline.collection.dimensions.lexicon import label_words, meanings
+from pipeline.collection.dimensions.parts import is_base
 from pipeline.collection.dimensions.result import Chosen, DimensionNote, DimensionPart, Dimensions
 
 _CARRIERS = frozenset({
@@ -14,7 +15,10 @@ _CARRIERS = frozenset({
     "installation", "support", "mount", "approx", "stacked", "spread", "partial", "large",
 })  # fmt: skip
 """What a work on paper or in parts is made of and kept in: such sizes are the object's, as far as the text tells."""
+_IN_PLAN = frozenset({"width", "depth", "diameter"})
 _LETTERS = re.compile(r"[^\W\d_]+")
+_SHARE_OF_HEIGHT = 0.05
+"""Height of a base over that of the object from which it matters whether the one is in the other."""
 _OPEN = frozenset({"height", "width", "depth", "length", "unlabelled"})
 
 
@@ -54,11 +58,48 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
         for part in read.parts
         if part.name in _labels() and part.value
     ]
+    out += _base_beside(read, chosen)
+    if not (chosen.width or chosen.depth or chosen.diameter):
+        out += [
+            DimensionNote("unused", f"{_shown(part, read)} of {part.words!r} fills no field", part.start, part.end)
+            for part in read.parts
+            if part.group not in groups and part.dimension in _IN_PLAN and part.value and is_strange(part.name, about)
+        ]
+    out += [
+        DimensionNote("unused", f"{_shown(part, read)} is taken as the height, which is not said", part.start, part.end)
+        for part in read.parts
+        if chosen.height and part.start == chosen.height.start and part.dimension == "unlabelled"
+        and part.name.startswith("with ") and chosen.width
+    ]  # fmt: skip
     for part in read.parts:
         if body is not None and (part.start, part.end) == (body.start, body.end) and is_strange(part.name, about):
             message = f"the size of {part.words!r} is taken for that of the whole object"
             out.append(DimensionNote("part", message, part.start, part.end))
     return tuple(out)
+
+
+def _base_beside(read: Dimensions, chosen: Chosen) -> list[DimensionNote]:
+    """Return a doubt where a base is wider than the object, or has a height that the object's perhaps includes."""
+    round_ = chosen.diameter
+    wider = [
+        DimensionNote("unused", f"the base is wider, {_shown(part, read)}, than the diameter that is taken",
+                      part.start, part.end)
+        for part in read.parts
+        if round_ and is_base(part.name) and part.dimension == "diameter" and (part.value or 0.0) > round_.value
+    ]  # fmt: skip
+    if wider:
+        return wider
+    body = next((p for p in read.parts if chosen.height and p.start == chosen.height.start), None)
+    if body is None or not body.value or (body.words and body.name.startswith(("with", "overall"))):
+        return []
+    whole = {part.group for part in read.parts if part.dimension == "depth"}  # three numbers, the first its height
+    return [
+        DimensionNote("unused", f"whether the height includes that of the base, {_shown(part, read)}, is not said",
+                      part.start, part.end)
+        for part in read.parts
+        if is_base(part.name) and part.dimension == "height" and (not part.assumed or part.group in whole)
+        and part.value and part.value >= _SHARE_OF_HEIGHT * body.value
+    ]  # fmt: skip
 
 
 def _shown(part: DimensionPart, read: Dimensions) -> str:

@@ -34,6 +34,12 @@ def agree(one: float, two: float, kind: str) -> bool:
     return gap <= _CLOSE[kind] + _EPS or gap <= _SHARE * max(one, two)
 
 
+def is_in_inches(bare: DimensionQuantity, other: DimensionQuantity) -> bool:
+    """Say whether a number without a unit is what another length is in inches."""
+    inch = units()["in"]
+    return other.kind == "length" and _near(bare.num * inch.num / (bare.den * inch.den), other.si())
+
+
 def _near(one: float, two: float) -> bool:
     """Say whether two numbers differ by no more than 3 %: a slip is only seen where 3 mm do not hide everything."""
     return abs(one - two) <= _SHARE * max(one, two)

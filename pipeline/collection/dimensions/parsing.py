@@ -74,8 +74,9 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
         notes.append(
             DimensionNote("truncated", f"{len(text):,} characters, of which {LONGEST:,} are read", LONGEST, len(text))
         )
-    _share_last(reader.groups, notes)
-    for group in reader.groups:
+    groups = _whole(reader.groups)
+    _share_last(groups, notes)
+    for group in groups:
         if all(q.unit is not None for q in group.quantities):
             continue
         _share_units(group, notes)
@@ -87,16 +88,35 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
                 )
             elif q.unit is None:
                 notes.append(DimensionNote("missing_unit", "no unit is written, so there is no value", q.start, q.end))
-    for group in reader.groups:
+    for group in groups:
         _weighed(group, notes)
         for q in group.quantities:
             if decimal == "," and _POINTED.fullmatch(q.word):
                 message = f"{q.word} is read as {q.num / q.den:.10g}, its point as a mark of thousands"
                 notes.append(DimensionNote("ambiguous", message, q.start, q.end))
     parts = tuple(
-        _part(group, number, q) for number, group in enumerate(_ordered(reader.groups, notes)) for q in group.quantities
+        _part(group, number, q) for number, group in enumerate(_ordered(groups, notes)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
+
+
+def _whole(groups: list[Group]) -> list[Group]:
+    """Return the groups, one of those that say each another dimension of the object: 36 in. (91 cm) h.; 20 in. w."""
+    out: list[Group] = []
+    for group in groups:
+        last = out[-1] if out else None
+        if last is not None and _is_own(last) and _is_own(group) and not last.named() & group.named():
+            last.quantities += group.quantities
+            last.qualifiers |= group.qualifiers
+        else:
+            out.append(group)
+    return out
+
+
+def _is_own(group: Group) -> bool:
+    """Whether a group says of the object itself, with a label at each number, what it says."""
+    own = group.name == "overall" and not group.words and not group.aside
+    return own and all(q.dimension for q in group.quantities)
 
 
 def _share_last(groups: list[Group], notes: list[DimensionNote]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from pipeline.collection.dimensions.tokens import (
+    BREAK,
     CLOSE,
     COLON,
     COMMA,
@@ -53,7 +54,7 @@ class Phrase:
 
 
 def is_label_letter(tokens: list[Token], at: int, text: str) -> bool:
-    """Say whether a letter such as the d of ".d" or "(b, lid)" numbers a component, and is not short for a word.
+    """Say whether a letter such as the d of ".d", "(b, lid)" or "b) H. 3 cm" numbers a component, and is no short word.
 
     Parameters
     ----------
@@ -76,7 +77,10 @@ def is_label_letter(tokens: list[Token], at: int, text: str) -> bool:
     if before in ("-", "&") or (before == "." and not text[token.start - 2 : token.start - 1].isalnum()):
         return True
     following = tokens[at + 1].type
-    opened = at > 0 and tokens[at - 1].type == OPEN
+    ahead = tokens[at - 1].type if at else BREAK
+    if following == CLOSE and ahead in (BREAK, CLOSE, COMMA, DOT) and tokens[at + 2].type in (DIMENSION, NUMBER, WORD):
+        return True
+    opened = ahead == OPEN
     return opened and (following == COMMA or (following == CLOSE and tokens[at + 2].type in (COLON, DOT)))
 
 
@@ -127,6 +131,8 @@ def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
     out.joined = joins > 0 and len(out.dimensions) > 1
     if out.joined:
         kept = [(word, token) for word, token in kept if token.type != JOIN]
+    while kept and kept[0][1].type == JOIN:
+        del kept[0]
     while kept and kept[-1][0] == "and":
         kept.pop()
     out.name = _normal(_glued(kept, text))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pipeline.collection.dimensions.pairing import agree, pair
+from pipeline.collection.dimensions.pairing import agree, is_in_inches, pair
 from pipeline.collection.dimensions.parts import is_base, is_detail, is_opening
 from pipeline.collection.dimensions.phrases import Phrase, phrase_of
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
@@ -33,6 +33,11 @@ _STATES = frozenset({"folded", "unfolded", "open", "opened", "closed", "unopened
 _VOLUMES = frozenset({"volum", "vol", "volume", "volumen", "volumul"})
 _STRAY = frozenset("'\"’”′″")
 _ASIDE = frozenset({OPEN, CLOSE, COLON, COMMA, DASH, DOT})
+
+
+def _is_whole(group: Group) -> bool:
+    """Say whether a group gives the object itself a size by its label."""
+    return group.name == "overall" and any(q.dimension for q in group.quantities)
 
 
 class Reader:
@@ -73,7 +78,7 @@ class Reader:
             elif kind == BREAK:
                 self._break(at)
             elif kind == COMMA:
-                if not self.fresh and self.label and self._is_remark():
+                if not self.fresh and self.label and (self._is_remark() or self._trails(at)):
                     self._remark()
                 else:
                     self.label.append(at)
@@ -145,6 +150,9 @@ class Reader:
             return False  # ".1b": the number of a component
         if item.dimension:
             return tokens[behind].type != COLON
+        if tokens[behind].type == OPEN:  # 11 (27.9 cm)
+            other = conversion_at(tokens, behind, self.text)
+            return other is not None and len(other[0]) == 1 and is_in_inches(item, other[0][0])
         if tokens[behind].type not in (END, BREAK, COMMA, CLOSE, DOT):
             return False
         alone = not self.label or tokens[self.label[-1]].type == COLON
@@ -181,8 +189,8 @@ class Reader:
                 if not behind:
                     return at
                 at = behind
-            elif tokens[place].type == DIMENSION and tokens[place - 1].type == CLOSE and self._labels(place, group):
-                at = place + 1
+            elif tokens[place - 1].type == CLOSE and self._labels(named := place + (tokens[place].word == "in"), group):
+                at = named + 1
             elif tokens[place].type == JOIN:
                 behind = self._joined(place + 1, group)
                 if not behind:
@@ -193,6 +201,8 @@ class Reader:
 
     def _labels(self, at: int, group: Group) -> bool:
         """Give a number the label behind its conversion, as in '28 7/8 in. (73.3 cm) height x 10 in. (25 cm) diam.'."""
+        if self.tokens[at].type != DIMENSION:
+            return False
         behind = at + 2 if self.tokens[at + 1].type == DOT else at + 1
         last, meaning = group.quantities[-1], self.tokens[at].meaning
         mates = [q for q in group.quantities if q.run == last.run and q is not last]
@@ -252,6 +262,8 @@ class Reader:
         group = Group(phrase.name or "overall", words, set(phrase.qualifiers))
         if len(items) == 1 and (is_base(group.name) or is_detail(group.name)):
             group.aside = bool(phrase.dimensions) or not items[0].dimension
+        elif len(items) == 1 and phrase.name and not (phrase.dimensions or items[0].dimension):
+            group.aside = any(_is_whole(other) for other in self.groups)  # length 60 cm; boom 20 cm; height 30 cm
         elif len(items) == 1 and phrase.name and phrase.dimensions:
             state = group.name.startswith(_BEHIND)
             group.aside = any(other.name == "overall" if state else not other.aside for other in self.groups)
@@ -316,6 +328,17 @@ class Reader:
         behind = phrase.name.startswith(_BEHIND)
         return behind or (not phrase.name and bool(phrase.dimensions or phrase.qualifiers))
 
+    def _trails(self, comma: int) -> bool:
+        """Say whether words right behind a labelled number are its own: "Width: 21 cm handle to spout, Height:"."""
+        tokens = self.tokens
+        first, group = self.label[0], self.current
+        following = tokens[comma + 1].type == DIMENSION and tokens[comma + 2].type in (COLON, NUMBER)
+        if group is None or not following or not group.quantities[-1].dimension or len(self.label) > _LONGEST_REMARK:
+            return False
+        if first == 0 or tokens[first - 1].type not in (UNIT, NUMBER, DOT, CLOSE):
+            return False
+        return not any(tokens[at].type in (COLON, COMMA, DIMENSION) for at in self.label)
+
     def _break(self, at: int) -> None:
         """End a clause at a semicolon, a line at a line break; a heading's words wait for the next line."""
         line = self.tokens[at].word != ";"
@@ -363,6 +386,7 @@ class Reader:
         if name and stands and group.name == "overall":
             group.name = name
             group.words = self.text[phrase.start : phrase.end].strip(" \t:,.()")
+            group.aside = group.aside or (len(group.quantities) == 1 and is_opening(name))
             use = True
         elif name in _STATES:
             group.name = f"{group.name} {name}"

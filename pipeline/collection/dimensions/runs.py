@@ -220,7 +220,7 @@ def _begins(tokens: list[Token], at: int) -> bool:
     """Say whether a number, or a dimension and a number, begin at a token."""
     if tokens[at].type == DIMENSION:
         at += 1
-        while tokens[at].type in (DOT, COLON):
+        while tokens[at].type in (DOT, COLON) or _qualifies(tokens[at]):
             at += 1
     return tokens[at].type in (NUMBER, DOTTED)
 

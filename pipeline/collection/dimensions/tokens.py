@@ -48,6 +48,7 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\bw/(?=[ (]|base|frame|mount|lid|stand)"), "cu"),
     (re.compile(r"(?i)(?<![^\W_])c/(?=[ (]?[^\W\d_])"), "cu"),
     (re.compile(r"(?i)(?<![^\W_])s/(?=[ (]?[^\W\d_])"), "ss"),
+    (re.compile(r"(?:(?<=[^\W\d_]{3} )|(?<=[^\W\d_]{3}: ))c\.(?=\s*\d)"), "ca"),  # weight c. 150 kg
     (re.compile(r"(?i)\bgr\.(?=\s*(?:H|Br?|T|Dm|D|L|Höhe|Breite|Tiefe|Länge|Durchmesser)\b)"), "max"),
     (re.compile(rf"(?i)(?<=[^\W\d_]),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),  # Height, max.: 31 cm
     (re.compile(rf"(?i)(?<=[^\W\d_]\.),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),
@@ -56,6 +57,8 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\bhors[ -]tout"), "horstout "),
     (re.compile(r"(?i)(?<![^\W_])[dln]['’](?=[^\W\d_]{2})"), "  "),  # l'ouverture, d'épaules
 )
+_EXTREME = re.compile(r"(\w{1,4})(max|min)")
+"""A label and its qualifier in one word: Dmax, Hmin."""
 _MIXED = re.compile(rf"(\d[\d,]*)[^\d{_V}]*(?:(\d+)\D+(\d+)|([{_V}]))")
 _MARKS = {
     "(": OPEN, "[": OPEN, "{": OPEN, "（": OPEN, "［": OPEN, ")": CLOSE, "]": CLOSE, "}": CLOSE, "）": CLOSE,
@@ -124,6 +127,10 @@ def tokens_of(text: str, decimal: str) -> list[Token]:
                 word, start = "x", end - 1
             if word in several:
                 out += [_word(one, start, end, known, by_word) for one in several[word]]
+            elif (extreme := _EXTREME.fullmatch(word)) and word not in known and extreme[1] in label_words():
+                middle = start + extreme.end(1)
+                out.append(_word(extreme[1], start, middle, known, by_word))
+                out.append(_word(extreme[2], middle, end, known, by_word))
             elif "x" in word and word not in known and _is_legend(word):
                 out += _legend(word, start, known, by_word)
             else:

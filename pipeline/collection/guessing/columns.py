@@ -17,6 +17,9 @@ NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
 _SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d", re.DOTALL)
+FEWEST = 10
+"""Cells that must hold the same before a column is taken to tell nothing."""
+
 _SOME = 200
 """Cells from which it is told what a column holds."""
 
@@ -80,6 +83,11 @@ class Column:
         return _share(self.filled, unit_of)
 
     @property
+    def says_one(self) -> bool:
+        """Whether it says the same of many objects, and so tells none from another."""
+        return len(self.filled) >= FEWEST and len(self.distinct) == 1
+
+    @property
     def numeric(self) -> bool:
         """Whether most of what it holds are numbers."""
         return bool(self.filled) and len(self.numbers) >= 0.5 * len(self.filled)
@@ -102,8 +110,9 @@ def columns_of(header: Iterable[str], rows: Iterable[Sequence[str]]) -> list[Col
 def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
     """Return the columns that may be a field, by field, the likeliest first.
 
-    Of two, the one that is filled much more is meant (twice as often); else the one whose name stands first in the
-    table: an accession number before the number of a database, a current location before a usual one.
+    Of two, the one that is filled much more is meant (twice as often), and not one that says the same everywhere; else
+    the one whose name stands first in the table: an accession number before that of a database, a current location
+    before a usual one.
 
     Parameters
     ----------
@@ -131,7 +140,13 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
         out[name] = [
             column
             for _, column in sorted(
-                pairs, key=lambda pair: (2 * len(pair[1].filled) <= most and most > 0, pair[0].internal, pair[0].rank)
+                pairs,
+                key=lambda pair: (
+                    2 * len(pair[1].filled) <= most and most > 0,
+                    pair[1].says_one,
+                    pair[0].internal,
+                    pair[0].rank,
+                ),
             )
         ]
     for column in out.pop(LENGTH, []):

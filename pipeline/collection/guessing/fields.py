@@ -231,6 +231,12 @@ class Fields:
             if word.casefold() not in seen:
                 seen.add(word.casefold())
                 values[word] = meaning
+        if display and False not in known.values() and len(column.filled) < len(column.values):
+            values[""] = False  # a box that is ticked or not
+            self.doubts.append(
+                f"column {column.name!r} says nothing but {', '.join(map(repr, known))}: an empty cell means "
+                f'no; leave "" out of [columns.{name}] values where it says nothing'
+            )
         entry["values"] = values
         if unknown:
             self.doubts.append(f"column {column.name!r}: what is meant by {unknown}? Add it to [columns.{name}] values")

@@ -39,6 +39,8 @@ _STOP = frozenset(
 )
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
+_GLUED = re.compile(r"(\w{3,}?)(?:number|nummer|num|nr|no)")
+"""A name of one word that ends with a word for number: "accessionnum"."""
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _OTHER = re.compile(r"[^\w]+|_")
 _WEAK = 1000
@@ -199,6 +201,8 @@ def _forms(name: str) -> Iterator[str]:
     yield plain(name)
     # What looks like two words may be one: "MoMANumber".
     yield plain(name.casefold())
+    if glued := _GLUED.fullmatch(plain(name)):
+        yield f"{glued[1]} no"
     yield plain(unit_in(name)[0])
     yield plain(bare(name))
     # "Objeto/Documento", "Titel | title": what either half says; of two rows of a head the lower one first.

@@ -23,6 +23,7 @@ from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
 from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import recognised
 from pipeline.collection.sources.rows import Row
+from pipeline.collection.sources.tables import files_of
 
 READ = 2000
 """Rows that the guess is made from."""
@@ -77,7 +78,9 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         kind = recognised(str(path), b"")
         if kind is not None:
             return {"format": kind.name}
-        raise CollectionError(f"{path}: a folder without records; name the museum's export itself")
+        raise CollectionError(
+            f"{path}: a folder without CSV files; name the museum's export itself, or the folder with its tables"
+        )
     try:
         head = head_of(path, SNIFFED)
     except OSError as problem:
@@ -110,6 +113,17 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
     told.sure.append(f"{encoding}, cells parted by {delimiter!r}")
     _set_head(source, first_lines(text, delimiter, LOOKED_AT + 60), told)
     return source
+
+
+def delimited_of(folder: Path, told: GuessNotes) -> dict[str, str]:
+    """Return encoding and delimiter of a folder's CSV files, by the largest of them."""
+    largest = max(files_of(folder), key=lambda file: file.stat().st_size)
+    quiet = GuessNotes({key: what for key, what in told.choices.items() if key in ("encoding", "delimiter")})
+    found = source_of(largest, quiet)
+    if found["format"] not in ("csv", "tsv"):
+        raise CollectionError(f"{largest}: no CSV file, whatever its name; leave it out of the folder")
+    told.sure += quiet.sure[:1]
+    return {"encoding": found["encoding"], "delimiter": found.get("delimiter", "\t")}
 
 
 def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: GuessNotes) -> None:

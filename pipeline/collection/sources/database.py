@@ -15,10 +15,9 @@ TIMEOUT = 600.0
 """Seconds that a database may take, where the mapping says nothing."""
 
 
-class DatabaseSettings(SourceSettings):
-    """How a database is read."""
+class QuerySettings(SourceSettings):
+    """What is asked of several tables."""
 
-    format: Literal["sql"] = Field(description="The kind of source.")
     query: Name | None = Field(default=None, description="One SELECT; or name a table instead.")
     table: Name | None = Field(default=None, description='A table or view, such as "tms.objects".')
     timeout_seconds: float | None = Field(
@@ -28,8 +27,14 @@ class DatabaseSettings(SourceSettings):
     @model_validator(mode="after")
     def _one(self) -> Self:
         if (self.query is None) == (self.table is None):
-            raise InputError('a source of format "sql" needs either query = "SELECT ..." or table = "name"')
+            raise InputError('a source of several tables needs either query = "SELECT ..." or table = "name"')
         return self
+
+
+class DatabaseSettings(QuerySettings):
+    """How a database is read."""
+
+    format: Literal["sql"] = Field(description="The kind of source.")
 
 
 class Database(Source):

@@ -11,6 +11,7 @@ from pipeline.collection.sources.delimited import Csv, Tsv
 from pipeline.collection.sources.lido import Lido
 from pipeline.collection.sources.linked_art import LinkedArt
 from pipeline.collection.sources.museumplus import MuseumPlus
+from pipeline.collection.sources.tables import Tables
 from pipeline.collection.sources.xlsx import Xlsx
 from pipeline.errors import InputError
 from pipeline.extensions import Registry
@@ -37,7 +38,7 @@ def _source(value: object) -> Source:
 
 
 SOURCES: Registry[Source] = Registry(
-    "kouros.sources", (Csv(), Tsv(), Xlsx(), Lido(), Adlib(), MuseumPlus(), LinkedArt(), Database()), _source
+    "kouros.sources", (Csv(), Tsv(), Xlsx(), Lido(), Adlib(), MuseumPlus(), LinkedArt(), Database(), Tables()), _source
 )
 """All kinds of sources, in the order in which they are asked whether they recognise one."""
 

@@ -107,7 +107,10 @@ def check_archive(archive: ZipFile, file: str) -> None:
     if "xl/workbook.bin" in names or any(name.startswith("content.xml") for name in names):
         raise CollectionError(f"{file}: a workbook, but not an .xlsx one; {SAVE_AGAIN}")
     if "[Content_Types].xml" not in names:
-        raise CollectionError(f"{file}: a zip archive, but no workbook; {SAVE_AGAIN}")
+        raise CollectionError(
+            f"{file}: a zip archive, but no workbook; {SAVE_AGAIN}; where CSV files are in it, unpack it and name "
+            "the folder"
+        )
     if len(entries) > ENTRIES_LIMIT:
         raise CollectionError(f"{file}: {len(entries):,} parts inside, more than {ENTRIES_LIMIT:,}; {SAVE_AGAIN}")
     for entry in entries:
