@@ -19,6 +19,7 @@ from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.object_facts import ObjectFacts, cells, vocabulary
 from pipeline.desk.run_facts import SHOWN, ListedObject, RunFacts
 from pipeline.desk.words import name_told, word_told
+from pipeline.quantities import sorting_key
 from pipeline.records import DecisionKind, Support, in_force
 from pipeline.report.language import _
 from pipeline.report.pages.chances import class_title
@@ -70,8 +71,8 @@ def search(asked: Asked) -> DeskAnswer:
     found = list(islice(hits, SHOWN * (page - 1), SHOWN * page + 1))
     context = {
         "found": found[:SHOWN], "more": len(found) > SHOWN, "page": page, "q": words, "gallery": gallery,
-        "state": state, "galleries": sorted(run.galleries), "total": len(run.objects), "states": run.states,
-        "asked": narrowed,
+        "state": state, "galleries": sorted(run.galleries, key=sorting_key), "total": len(run.objects),
+        "states": run.states, "asked": narrowed,
     }  # fmt: skip
     return DeskAnswer("found.html" if asked.fragment else "search.html", context)
 
@@ -250,7 +251,8 @@ def errands(asked: Asked) -> DeskAnswer:
     context = {
         "entries": shown, "page": page, "more": len(chosen) > _ERRANDS_SHOWN * page, "count": len(chosen),
         "gallery": gallery, "whose": whose, "state": state, "spanned": spanned, "number": number,
-        "galleries": sorted({e.errand.gallery for e in every}), "people": sorted({e.whose for e in every if e.whose}),
+        "galleries": sorted({e.errand.gallery for e in every}, key=sorting_key),
+        "people": sorted({e.whose for e in every if e.whose}),
         "plan": run.plan, "done": sum(e.state == "done" for e in chosen),
     }  # fmt: skip
     return DeskAnswer("errands.html", context)
@@ -322,7 +324,7 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
         "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house],
         "classes": sorted(run.classes, key=class_title), "class_told": class_title, "word_told": word_told,
         "counts": run.classes,
-        "galleries": sorted(run.galleries), "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
+        "galleries": sorted(run.galleries, key=sorting_key), "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
         "states": states, "unit": cell_unit(QUANTITIES[states][0], run.units) if states in QUANTITIES else "",
         "supports": tuple(Support), "about": len(about), "typed": given, "problem": problem,
         "version": rules_version(asked.site.config), "saved": asked.query.get("saved", ""),

@@ -39,7 +39,7 @@ class PagePart:
 
 
 def paged(objects: Listing, settings: Settings, most: int = MOST, stored: int = STORED) -> list[PagePart]:
-    """Cut a collection into pages: galleries by name, then what is not on display, floor by floor.
+    """Cut a collection into pages: galleries by name, as people count, then what is not on display, floor by floor.
 
     What is not on display is in the order of its numbers, where nothing is computed of it.
 
@@ -59,7 +59,8 @@ def paged(objects: Listing, settings: Settings, most: int = MOST, stored: int = 
         groups.setdefault((not run.on_display, place), []).append(run)
     out: list[PagePart] = []
     away: list[tuple[str, Listing]] = []
-    for absent, place in sorted(groups):
+    # Gallery 2 comes before Gallery 19.
+    for absent, place in sorted(groups, key=lambda group: (group[0], sorting_key(group[1]), group[1])):
         members = objects.joined(groups[absent, place])
         if not absent:
             floor, pieces = floor_name(settings, place), _pieces(members, most)

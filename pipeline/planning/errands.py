@@ -194,7 +194,8 @@ def errands_of(found: Iterable[Advised], efforts: Efforts, order: Mapping[str, i
         gallery, case, measure, anchored, alone = key
         # What is in no case is by itself; its furniture is fastened before what is done on it.
         first = sorting_key(members[key][0].object_number)
-        return order.get(gallery, len(order)), gallery, sorting_key(case), sorting_key(alone), anchored, first, measure
+        place = order.get(gallery, len(order)), sorting_key(gallery)
+        return *place, sorting_key(case), sorting_key(alone), anchored, first, measure
 
     keys.sort(key=walked)
     at = {key: place for place, key in enumerate(keys)}
