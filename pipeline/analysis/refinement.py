@@ -335,7 +335,7 @@ class FidelitySearch:
 
         The best estimates come first; then of furniture's variants the bare floor, under which the demand is mostly
         the least, and the strongest: most of the others are known then to lie in between.  No verdict hangs on the ends
-        of such a range any more: they are scanned.  So are at first the best estimates of what answers smoothly.
+        that variants make: they are scanned.  What answers smoothly is scanned at first, whatever it is.
         """
         every = range(len(self.found))
         ends = [self._ends(part, found) for found in self.found]
@@ -343,28 +343,28 @@ class FidelitySearch:
         for at in every:
             ends[at] = self._ends(part, self.found[at])
         bests = np.unique(part.spans.rows[part.spans.starts])
-        smooth = self.work.model.flips is None and self.level.combine != "mean"
+        smooth, alone = self.work.model.flips is None and self.level.combine != "mean", len(self.cells) == 1
         strongest = (at for at, asked in self._order() if _PASSING in asked)
         asked_of = [(at, True) for at in self.cells[0]]
         asked_of += [(at, False) for at in dict.fromkeys((*self.cells[0], *self.cells[-1], *strongest))]
-        glanced = [bests[:0] for _ in every]
+        scanned = [bests[:0] for _ in every]
         for at, best in asked_of:
             rows = self._heard(part, ends, at)
-            if best:
+            if best and not alone:
                 rows = np.intersect1d(rows, bests)
             if rows.size:
-                finely = best and not smooth
-                numerics = self.numerics.integrated if finely else self.numerics.scanning
+                exactly = best and not smooth
+                numerics = self.numerics.integrated if exactly else self.numerics.scanning
                 self.effort.numbers += self._up(Step.HISTORY, self._only(at, rows), numerics)
                 ends[at] = self._ends(part, self.found[at])
             if best and smooth:
-                glanced[at] = rows
-        self._confirm(part.output, glanced)
+                scanned[at] = rows
+        self._confirm(part.output, scanned)
 
-    def _confirm(self, output: str, glanced: Sequence[Indices]) -> None:
-        """Integrate what was only glanced at under the motions that may govern it."""
+    def _confirm(self, output: str, scanned: Sequence[Indices]) -> None:
+        """Integrate what was only scanned under the motions that may govern it."""
         most = np.max([found.high[output] for found in self.best], axis=0)
-        for rows, found in zip(glanced, self.found, strict=True):
+        for rows, found in zip(scanned, self.found, strict=True):
             near = rows[found.high[output][rows] >= (1.0 - GLANCE) * most[rows]]
             if near.size:
                 self.effort.numbers += integrate(found, near, self.context, self.numerics.integrated)

@@ -293,7 +293,7 @@ def test_where_only_another_class_makes_harm_possible_no_measure_is_sought_but_w
     view = chance_view(Assessment(one.scene, tuple(findings[0]), (), likelihoods=(mixed,)))
     assert view is not None
     assert view.unnamed
-    assert "Say what it is first" in view.check
+    assert view.check.startswith("Say first what it is: ")
     assert view.classes.startswith("vessel (0.60): harm below 1 %, lamp (0.40): harm ")
 
 

@@ -111,7 +111,7 @@ def test_the_rules_that_answer_most_come_first(tmp_path: Path) -> None:
         visitor = Visitor(address)
         page = visitor.get("/house").page
         shown = [" ".join(one.text_content().split()) for one in page.xpath("//section[@aria-labelledby='asked']//li")]
-        assert shown == ["vessel: how they are held 6 objects"]
+        assert shown == ["Vessel: how they are held 6 objects"]
         (there,) = page.xpath("//section[@aria-labelledby='asked']//a/@href")
         chosen = visitor.get(str(there)).page
         assert chosen.xpath("//select[@name='class']/option[@selected]/@value") == ["vessel"]

@@ -173,6 +173,7 @@ def test_every_page_fits_and_breaks_no_rule_of_wcag(running: str, browser: Chrom
 
 def test_the_desk_is_read_in_the_dark(running: str, browser: Chrome) -> None:
     """Forms above all: what is typed and what is on buttons has the contrast that axe asks for."""
+    complaints(browser)  # what an earlier test left in the log
     browser.execute_cdp_cmd("Page.setBypassCSP", {"enabled": True})
     browser.execute_cdp_cmd(
         "Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}

@@ -183,6 +183,6 @@ def test_each_kind_of_news_is_told_of_its_object(museum: Path) -> None:
 
 def load_run_day(index: str) -> str:
     """The day on which the run of an index began, as its foot says."""
-    found = re.search(r"from (\d{4}-\d\d-\d\d)T", index)
+    found = re.search(r"from (\d{4}-\d\d-\d\d) ", index)
     assert found
     return found[1]

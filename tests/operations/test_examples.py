@@ -192,7 +192,9 @@ def test_the_dag_in_airflow_itself(placed: Callable[[str], str], tmp_path: Path)
 
 
 def test_the_documentation_names_every_example() -> None:
-    page = (ROOT / "docs" / "how-to" / "schedule.md").read_text(encoding="utf-8")
+    page = "".join(
+        (ROOT / "docs" / "how-to" / f"{name}.md").read_text(encoding="utf-8") for name in ("schedule", "server")
+    )
     for example in EXAMPLES.iterdir():
         if not example.name.startswith("__"):
             assert f"examples/{example.name}" in page

@@ -20,7 +20,7 @@ def rows(folder: Path, efforts: Mapping[str, Mapping[str, int]]) -> list[list[st
     head = replace(builder.record(), assessments=(), wishes=None, spacings=())
     with ReportWriter(folder / "report", PageRenderer(head, Units(), Language())) as writer:
         page = writer.finish(head, replace(total(()), efforts=efforts), None, {}).parent / "method.html"
-    table = html.parse(str(page)).xpath("//h3[@id='effort']/following-sibling::table[1]/tbody/tr")
+    table = html.parse(str(page)).xpath("//*[@aria-labelledby='effort']/table/tbody/tr")
     return [["".join(cell.itertext()).strip() for cell in row] for row in table]
 
 
