@@ -119,11 +119,20 @@ def test_folders_that_hold_no_tables(tmp_path: Path) -> None:
 def test_names_that_a_database_would_not_take(head: str, names: list[str], tmp_path: Path) -> None:
     from pipeline.collection.sources.schema import tables_of
 
-    write(tmp_path / 'odd "name.csv', head, [["1"] * len(names), ["2"] * len(names)])
-    with tables.as_database(tmp_path, "utf-8", ",") as url:
+    home = tmp_path / "what? 100 % #1"  # such as means something in an address
+    write(home / 'odd "name.csv', head, [["1"] * len(names), ["2"] * len(names)])
+    with tables.as_database(home, "utf-8", ",") as url:
         (table,) = tables_of(url)
     assert table.name == 'odd "name'
     assert list(table.columns) == names
+
+
+def test_two_files_that_would_be_one_table(tmp_path: Path) -> None:
+    for name in ("Objects.csv", "objects.tsv"):
+        write(tmp_path / name, "id", [["1"]])
+    message = r"Objects.csv and objects.tsv would be one table; rename"
+    with pytest.raises(CollectionError, match=message), tables.as_database(tmp_path, "utf-8", ","):
+        pass
 
 
 def test_a_column_on_view_that_names_galleries_is_the_place(tmp_path: Path) -> None:

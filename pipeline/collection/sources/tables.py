@@ -5,6 +5,7 @@ They are laid into a database of SQLite of their own, which is gone afterwards, 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
@@ -28,6 +29,7 @@ MOST = 200
 
 _ENDINGS = frozenset({".csv", ".tsv"})
 _MOST_COLUMNS = 2000
+_UNSAFE = re.compile(r"[^\w-]", re.ASCII)
 
 
 class TablesSettings(QuerySettings):
@@ -98,6 +100,12 @@ def as_database(folder: Path, encoding: str, delimiter: str, limits: Limits = ST
     files = files_of(folder)
     if not 0 < len(files) <= MOST:
         raise CollectionError(f"{folder}: {len(files)} CSV files; name a folder with the tables of one export")
+    names: dict[str, Path] = {}
+    for file in files:
+        # SQLite tells no capital from a small letter.
+        other = names.setdefault(file.stem.casefold(), file)
+        if other is not file:
+            raise CollectionError(f"{folder}: {other.name} and {file.name} would be one table; rename one of them")
     try:
         size = sum(file.stat().st_size for file in files)
     except OSError as problem:
@@ -108,7 +116,8 @@ def as_database(folder: Path, encoding: str, delimiter: str, limits: Limits = ST
             "neither sizes nor places, or raise [limits] megabytes"
         )
     with TemporaryDirectory(prefix="kouros-tables-") as home:
-        path = Path(home) / f"{folder.name or 'tables'}.sqlite"
+        # Of any folder's name only what means nothing in an address.
+        path = Path(home) / f"{_UNSAFE.sub('_', folder.name)[:80] or 'tables'}.sqlite"
         with closing(connect(path)) as database:
             for file in files:
                 _fill(database, file, encoding, "\t" if file.suffix.casefold() == ".tsv" else delimiter, limits.rows)
@@ -144,7 +153,7 @@ def _fill(database: Connection, file: Path, encoding: str, delimiter: str, most:
         first = next(found := cells(), None)
         if first is not None:
             marks = ", ".join("?" * len(names))
-            database.executemany(f"INSERT INTO laid VALUES ({marks})", chain([first], found))  # noqa: S608
+            database.executemany(f"INSERT INTO laid VALUES ({marks})", chain([first], found))  # noqa: S608  # nosec B608
     _keyed(database, _quoted(file.stem), names)
 
 
@@ -154,7 +163,7 @@ def _keyed(database: Connection, table: str, names: list[str]) -> None:
     key = next((name for name in linked if _tells_apart(database, name)), None)
     columns = (f"{_quoted(name)} TEXT{' PRIMARY KEY' if name == key else ''}" for name in names)
     database.execute(f"CREATE TABLE {table} ({', '.join(columns)})")
-    database.execute(f"INSERT INTO {table} SELECT * FROM laid")  # noqa: S608 - quoted
+    database.execute(f"INSERT INTO {table} SELECT * FROM laid")  # noqa: S608  # nosec B608 - quoted
     database.execute("DROP TABLE laid")
     for name in linked:
         if name != key:
@@ -164,7 +173,7 @@ def _keyed(database: Connection, table: str, names: list[str]) -> None:
 def _tells_apart(database: Connection, name: str) -> bool:
     """Whether a column has another text in each row."""
     column = _quoted(name)
-    found = database.execute(f"SELECT count(*), count(DISTINCT {column}) FROM laid")  # noqa: S608 - quoted
+    found = database.execute(f"SELECT count(*), count(DISTINCT {column}) FROM laid")  # noqa: S608  # nosec B608 - quoted
     rows, different = map(int, found.fetchone())
     return 0 < rows == different
 
