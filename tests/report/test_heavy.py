@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.browser
 
-MOST_BYTES = 1_450_000
+MOST_BYTES = 1_480_000
 """The aim is 1.5 MB; real galleries of longer sentences and titles need what is left.
 
 62 % of these objects are to be acted on, and each of them has a card: sizes are assumed where a record has none.
@@ -113,6 +113,9 @@ def test_paper_cuts_no_picture_in_two(browser: Chrome, record: RunRecord, tmp_pa
         "const s = document.createElement('style');"
         "s.textContent = 'svg.chart, svg.plan { background: #0f0 !important; print-color-adjust: exact !important }';"
         "document.head.append(s);"
+        # All that paper may show: the entries too, unfolded.
+        "for (const d of document.querySelectorAll('details')) d.open = true;"
+        "for (const c of document.querySelectorAll('input[type=checkbox]')) if (!c.checked) c.click();"
         "return ['svg.chart, svg.plan', 'figure, .card'].map(s => document.querySelectorAll(s).length)"
     )
     answer = browser.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": True})
