@@ -23,10 +23,10 @@ from tests.night.changing import Changing, exported
 pytestmark = pytest.mark.slow_file
 
 SOAK = "KOUROS_SEQUENCES" in os.environ
-SEQUENCES = int(os.environ.get("KOUROS_SEQUENCES", "9"))
+SEQUENCES = int(os.environ.get("KOUROS_SEQUENCES", "20"))
 FIRST = int(os.environ.get("KOUROS_FIRST", "0"))
 EDITS = int(os.environ.get("KOUROS_EDITS", "8" if SOAK else "3"))
-"""Changes of each sequence: every day each kind once in all, in a `make soak` any at any time."""
+"""Changes of each sequence: every day each kind twice in all, in a `make soak` any at any time."""
 
 
 @cache

@@ -36,7 +36,7 @@ from tests.museum import few_samples
 pytestmark = pytest.mark.slow_file
 
 SILENT = Console(quiet=True)
-DAMAGES = int(os.environ.get("KOUROS_DAMAGES", "45"))
+DAMAGES = int(os.environ.get("KOUROS_DAMAGES", "110"))
 SEED = 17
 DATABASE = "kouros.sqlite"
 EXPORTS = ("findings.csv", "objects.csv", "recommendations.csv")

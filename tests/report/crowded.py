@@ -17,7 +17,11 @@ def resampled(record: RunRecord, count: int = COUNT, *, seed: int = 1) -> RunRec
     advice and wishes are those of the real object.
     """
     draw = Random(seed)
-    shown = [a for a in record.assessments if a.scene.item.on_display]
+    # The same ones, whatever the order of a run's pages.
+    shown = sorted(
+        (a for a in record.assessments if a.scene.item.on_display),
+        key=lambda a: (a.scene.item.gallery, a.scene.item.case, a.scene.item.object_number),
+    )
     chosen = draw.choices(shown, k=count)
     asked: dict[str, list[MeasurementRequest]] = {}
     for request in record.wishes or ():
