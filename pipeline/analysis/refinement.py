@@ -344,9 +344,10 @@ class FidelitySearch:
             ends[at] = self._ends(part, self.found[at])
         bests = np.unique(part.spans.rows[part.spans.starts])
         smooth, alone = self.work.model.flips is None and self.level.combine != "mean", len(self.cells) == 1
-        strongest = (at for at, asked in self._order() if _PASSING in asked)
         asked_of = [(at, True) for at in self.cells[0]]
-        asked_of += [(at, False) for at in dict.fromkeys((*self.cells[0], *self.cells[-1], *strongest))]
+        if not alone:
+            strongest = (at for at, asked in self._order() if _PASSING in asked)
+            asked_of += [(at, False) for at in dict.fromkeys((*self.cells[0], *self.cells[-1], *strongest))]
         scanned = [bests[:0] for _ in every]
         for at, best in asked_of:
             rows = self._heard(part, ends, at)

@@ -257,9 +257,9 @@ class _Making:
         told = []
         for (_, trace), channel in zip(self.traces, self._by_trace(), strict=True):
             towards = "" if channel.orientation is None else _degrees(channel.orientation)
-            unit = f"in {own_unit(trace.stats)[0]}".removesuffix("in ")
+            unit = own_unit(trace.stats)[0]
             kind = {True: "processed", False: "raw"}.get(trace.stats.get("kouros", {}).get("processed"), "")
-            told.append(", ".join(word for word in (channel.code, towards, unit, kind) if word))
+            told.append(", ".join(word for word in (channel.code, towards, unit and f"in {unit}", kind) if word))
         named = ", ".join(path.name for path in self.local.values())
         return f"{named} holds {counted(len(told), 'channel')} ({'; '.join(told)})"
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pipeline.motions.candidates import Unusable
 from pipeline.motions.errors import MotionError
-from pipeline.motions.gathering import gather
+from pipeline.motions.gathering import GatheredFiles, gather
 from pipeline.motions.manifest import MANIFEST, Manifest, load_manifest
 from pipeline.motions.placing import DESIGN, PlacedRecords, changed, commit, opened, plan
 from pipeline.motions.proposing import Answers, MissingAnswer, RecordProposal, propose
@@ -146,31 +146,59 @@ def add(
     MotionError
         For a site or a record that cannot be used; then nothing was written.
     """
-    with TemporaryDirectory(prefix="kouros-add-") as scratch:
-        return _added(files, folder, wish, settings, units, page, ask, progress, Path(scratch), dry_run=dry_run)
-
-
-def _added(
-    files: Sequence[Path],
-    folder: Path,
-    wish: AddWish,
-    settings: "Settings | None",
-    units: "Units",
-    page: Path | None,
-    ask: Ask | None,
-    progress: Progress,
-    scratch: Path,
-    *,
-    dry_run: bool,
-) -> Addition:
-    """Add records to a site, with a folder to unpack files in."""
     if folder.name == MANIFEST:
         folder = folder.parent
     before, known = opened(folder)
     there = frozenset() if known is None else frozenset((folder / n).resolve() for n in _named(known))
-    progress.step("files", 0, 1)
-    found = gather(files, leave=there if _inside(files, folder) else frozenset(), scratch=scratch)
-    progress.step("files", 1, 1)
+    with TemporaryDirectory(prefix="kouros-add-") as scratch:
+        progress.step("files", 0, 1)
+        found = gather(files, leave=there if _inside(files, folder) else frozenset(), scratch=Path(scratch))
+        progress.step("files", 1, 1)
+        answers, proposals, left, missing = _answered(found, wish, known, ask)
+        level = answers.level or _level(known)
+        if wish.guess:
+            asked = [q for q in missing if q.about == "level"]
+            left += [
+                Unusable(one.name, "; ".join(f"{q.text}: {q.option}" for q in one.questions))
+                for one in proposals
+                if one.questions
+            ]
+            proposals = [one for one in proposals if not one.questions]
+            missing = asked
+        if missing:
+            raise UsageError(_listed(missing))
+        if wish.answers.name and len(proposals) > 1:
+            names = ", ".join(one.name for one in proposals)
+            raise UsageError(f"--name is for one record, and the files hold {len(proposals)}: {names}")
+        _nothing_wrong(proposals, [*left, *found.unusable], guess=wish.guess)
+        made = plan(folder, level, proposals, wish.accept, before, known)
+        left = [*left, *found.unusable, *(Unusable(name, str(problem)) for name, problem in made.refused)]
+        _clash(wish, made.level, made.already, known)
+        if made.refused and not wish.guess:
+            raise _refused([(name, str(problem)) for name, problem in made.refused], usable=len(made.placed))
+        if not made.placed and not made.already:
+            raise _refused([(one.name, one.reason) for one in left])
+        place = _place(wish, found.catalogues.site, folder)
+        told = _told(place, new=before is None)
+        overruled = {name for one in made.placed for name in one.record.accept}
+        told += [f"nothing was refused for {name}: --accept {name} was not needed" for name in wish.accept
+                 if name and name not in overruled]  # fmt: skip
+        file = folder / MANIFEST
+        result = Addition(file, before is None, made.placed, {}, made.already, left, found.passed_over, told,
+                          made.withdrawn, None, None)  # fmt: skip
+        text = changed(made, place) if made.placed else None
+        if dry_run or text is None:
+            if text is None:
+                read_site(folder, kept=None if settings is None else settings.kept)
+            return result
+        commit(made, text)
+        return _shown(result, folder, before, wish, settings, units, page, progress)
+
+
+def _answered(
+    found: GatheredFiles, wish: AddWish, known: Manifest | None, ask: Ask | None
+) -> tuple[Answers, list[RecordProposal], list[Unusable], list[MissingAnswer]]:
+    """Return the answers with those of a person, what they make of the files, and which are missing all the same."""
     answers, level = wish.answers, wish.answers.level
     proposals, left = propose(found, answers)
     missing = _missing(proposals, known, level)
@@ -183,44 +211,7 @@ def _added(
             answers = ask(more, answers)
             proposals, left = propose(found, answers)
         missing = _missing(proposals, known, level)
-    level = answers.level or _level(known)
-    if wish.guess:
-        asked = [q for q in missing if q.about == "level"]
-        left += [
-            Unusable(one.name, "; ".join(f"{q.text}: {q.option}" for q in one.questions))
-            for one in proposals
-            if one.questions
-        ]
-        proposals = [one for one in proposals if not one.questions]
-        missing = asked
-    if missing:
-        raise UsageError(_listed(missing))
-    if wish.answers.name and len(proposals) > 1:
-        names = ", ".join(one.name for one in proposals)
-        raise UsageError(f"--name is for one record, and the files hold {len(proposals)}: {names}")
-    _nothing_wrong(proposals, [*left, *found.unusable], guess=wish.guess)
-    made = plan(folder, level, proposals, wish.accept, before, known)
-    left = [*left, *found.unusable, *(Unusable(name, str(problem)) for name, problem in made.refused)]
-    _clash(wish, made.level, made.already, known)
-    if made.refused and not wish.guess:
-        raise _refused([(name, str(problem)) for name, problem in made.refused], usable=len(made.placed))
-    if not made.placed and not made.already:
-        raise _refused([(one.name, one.reason) for one in left])
-    place = _place(wish, found.catalogues.site, folder)
-    told = _told(place, new=before is None)
-    overruled = {name for one in made.placed for name in one.record.accept}
-    told += [f"nothing was refused for {name}: --accept {name} was not needed" for name in wish.accept
-             if name and name not in overruled]  # fmt: skip
-    file = folder / MANIFEST
-    result = Addition(file, before is None, made.placed, {}, made.already, left, found.passed_over, told,
-                      made.withdrawn, None, None)  # fmt: skip
-    text = changed(made, place) if made.placed else None
-    if dry_run or text is None:
-        if text is None:
-            read_site(folder, kept=None if settings is None else settings.kept)
-        return result
-    commit(made, text)
-    return _shown(result, folder, before, wish, settings, units, page, progress)
+    return answers, proposals, left, missing
 
 
 def _named(manifest: Manifest) -> list[str]:
