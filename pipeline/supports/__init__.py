@@ -55,7 +55,7 @@ def _passed_on(motion: Motion, model: Model, parameters: Mapping[str, float], tw
     record = resampled(motion, refine)
     for after in AFTER:
         felt, moved = _histories(model, record, parameters, two, after)
-        size = np.hypot(*felt)
+        size = np.sqrt((felt**2).sum(axis=0))
         loud = np.flatnonzero(size[record.samples :] > QUIET * float(size.max()))
         # It comes to rest within the step after the last loud sample; what is passed on ends one sample of rest later.
         end = record.samples + (int(loud[-1]) + 3 if loud.size else 0)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pipeline.kernels.transport import sharpen
 from pipeline.quantities import Array, G
 from pipeline.records import Motion
 
@@ -95,46 +96,12 @@ def conserving(base: Array, felt: Array, moved: Array, weight: Array, dt: float)
     corners[:, -1] += 0.5 * (pace[:, -1] + pace[:, -2])
     corners /= mass
     carried = np.maximum(weight, LIGHTEST)
-    share = np.maximum(np.hypot(*corners), np.hypot(*felt)) / carried
+    # Roots of squares: hypot costs ten times as much.
+    share = np.sqrt(np.maximum((corners**2).sum(axis=0), (felt**2).sum(axis=0))) / carried
     most = share.copy()
     most[1:] = np.maximum(most[1:], share[:-1])
     most[:-1] = np.maximum(most[:-1], share[1:])
     limit = carried * most
-    flow = np.diff(felt, axis=1) / 6.0
     # All of it wherever no corner then leaves its circle; the rest as far as that allows.
-    free = np.ones(m - 1, dtype=bool)
-    while True:
-        trial = corners + _received(flow * free, mass)
-        outside = np.hypot(*trial) > limit * (1.0 + ROUNDING)
-        touched = free & (outside[1:] | outside[:-1])
-        if not touched.any():
-            break
-        free &= ~touched
-    left = flow * ~free
-    for _ in range(PASSES):
-        # A corner is the middle of what it becomes by twice the flow from either side: none may leave the circle alone.
-        ahead = _way(trial[:, 1:], 2.0 * left / mass[1:], limit[1:])
-        back = _way(trial[:, :-1], -2.0 * left / mass[:-1], limit[:-1])
-        flow = left * np.minimum(1.0, np.minimum(ahead, back))
-        trial += _received(flow, mass)
-        left -= flow
-    return trial
-
-
-def _received(flow: Array, mass: Array) -> Array:
-    # What flows from each corner to the next changes both.
-    change = np.zeros((2, mass.size))
-    change[:, 1:] += flow
-    change[:, :-1] -= flow
-    return change / mass
-
-
-def _way(start: Array, step: Array, limit: Array) -> Array:
-    # How many steps lead from the start to the circle of that radius, 1 where there is no step.
-    square, along = (step * step).sum(axis=0), (start * step).sum(axis=0)
-    gap = np.maximum(0.0, limit * limit - (start * start).sum(axis=0))
-    root = np.sqrt(along * along + square * gap)
-    # Of the two forms of the root the one without a cancellation.
-    above, below = np.where(along > 0.0, gap, root - along), np.where(along > 0.0, root + along, square)
-    ways: Array = np.divide(above, below, out=np.ones_like(gap), where=below > 0.0)
-    return ways
+    sharpen(corners, np.diff(felt, axis=1) / 6.0, limit, mass, ROUNDING, PASSES)
+    return corners
