@@ -93,7 +93,7 @@ def slip_bounds_one(
     push : ndarray, shape (n,)
         ``|a_h|``, m/s2.
     ratio, maxima : ndarray
-        From `pipeline.kernels.quiet`, of this very motion: `demand_ratio` (n,) [-], and its block maxima.
+        Of this very motion: |a_h| / (g + a_z), infinite where contact is lost (n,) [-], and its block maxima.
     pushes : ndarray
         Block maxima of push, m/s2.
     dt : float

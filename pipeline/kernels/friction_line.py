@@ -410,7 +410,7 @@ def friction_line_batch(
     x, z : ndarray, shape (n,)
         Horizontal (a) and vertical (a_z) acceleration of the base, m/s2, linear between samples.
     ratio, maxima : ndarray
-        From `pipeline.kernels.quiet`, of this very motion: `demand_ratio` (n,) [-], and its block maxima.
+        Of this very motion: |a_h| / (g + a_z), infinite where contact is lost (n,) [-], and its block maxima.
     pushes : ndarray
         Block maxima of ``|x|``, m/s2.
     dt : float

@@ -24,33 +24,6 @@ HAIR = 1e-9
 
 
 @kernel
-def demand_ratio(x: Array, y: Array, z: Array) -> Array:
-    r"""Return the friction that would hold an object at each sample.
-
-    .. math::
-
-        \frac{|a_h|}{\max(0, g + a_z)}
-
-    Parameters
-    ----------
-    x, y, z : ndarray, shape (n,)
-        Acceleration of the base, m/s2.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Dimensionless; infinite where contact is lost.
-    """
-    n = x.shape[0]
-    ratio = np.empty(n)
-    for i in range(n):
-        normal = G + z[i]
-        # Without weight an object is free: even without a push it no longer holds on.
-        ratio[i] = math.hypot(x[i], y[i]) / normal if normal > 0.0 else math.inf
-    return ratio
-
-
-@kernel
 def block_maxima(values: Array) -> Array:
     """Return the maxima of consecutive blocks of BLOCK values.
 

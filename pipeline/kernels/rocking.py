@@ -285,7 +285,7 @@ def rocking_batch(
     x, z : ndarray, shape (n,)
         Horizontal (a) and vertical (a_z) acceleration of the base, m/s2, linear between samples.
     ratio, maxima : ndarray
-        From `pipeline.kernels.quiet`, of this very motion: `demand_ratio` (n,) [-], and its block maxima.
+        Of this very motion: |a_h| / (g + a_z), infinite where contact is lost (n,) [-], and its block maxima.
     dt : float
         Time step, s.
     peak : float

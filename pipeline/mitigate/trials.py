@@ -160,6 +160,10 @@ class TrialRunner:
         float
             In any direction [m2/s2]: times the mass the moment that lifts the base off.
         """
+        # Every fixing asks it of the same objects.
+        return self.once(("tipping", arm, base), lambda: self._tipping(arm, base))
+
+    def _tipping(self, arm: float, base: float) -> float:
         each = (
             shared.level.combined([float(np.max(arm * push - base * weight)) for push, weight in some])
             for shared in self._shared

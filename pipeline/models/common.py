@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from pipeline.kernels import flags, samples
-from pipeline.kernels.quiet import block_maxima, demand_ratio, largest_ratio
+from pipeline.kernels.quiet import block_maxima, largest_ratio
 from pipeline.quantities import Array, G
 from pipeline.records import Curve, Excitation, Scene, Support
 
@@ -93,16 +93,16 @@ class Quiet:
         self.z = samples(motion.z)
         self.dt = motion.dt
         # Along one direction no root is needed, for the same numbers: histories ask for each of many directions.
-        self.push = np.abs(self.x) if motion.y is None else np.hypot(self.x, self.y)
+        self.push = np.abs(self.x) if motion.y is None else np.sqrt(self.x**2 + self.y**2)
         self.peak = float(self.push.max())
         self.pushes = block_maxima(self.push)
-        self.ratio = demand_ratio(self.x, self.y, self.z) if motion.y is not None else _grip(self.push, self.z)
+        self.ratio = _grip(self.push, self.z)
         self.maxima = block_maxima(self.ratio)
         self.tail = -1.0 if motion.tail is None else float(motion.tail)
 
 
 def _grip(push: Array, z: Array) -> Array:
-    """Return what `demand_ratio` gives along one direction."""
+    """Return the friction that would hold an object at each sample: |a_h| / (g + a_z), infinite without contact."""
     normal = G + z
     return np.divide(push, normal, out=np.full_like(push, np.inf), where=normal > 0.0)
 

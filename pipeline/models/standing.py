@@ -166,13 +166,15 @@ def tilt_ratios(motion: Excitation, body: Array) -> Array:
     does not begin to; where it lands as a whole the impulse along the base, whatever the push was, is at most mu_s
     times the one that presses it down, so that the push counts as unlimited where a body is thrown up.
     """
+    return _tilts(motion, body[:, kernel.MU_S], body[:, kernel.TANGENT], body[:, kernel.TANGENT + 1])
+
+
+def _tilts(motion: Excitation, friction: Array, tangent: Array, tangent_other: Array) -> Array:
     to_positive, to_negative = lift_ratios(motion)
-    if np.min(motion.z) < -G and max(to_positive, to_negative) > 0.0:
+    # What it is thrown up by counts as unlimited.
+    if max(to_positive, to_negative) > 0.0 and np.min(motion.z) < -G:
         to_positive = to_negative = np.inf
-    friction, tangent = body[:, kernel.MU_S], body[:, kernel.TANGENT : kernel.TANGENT + 2]
-    return np.maximum(
-        np.minimum(to_positive, friction) / tangent[:, 0], np.minimum(to_negative, friction) / tangent[:, 1]
-    )
+    return np.maximum(np.minimum(to_positive, friction) / tangent, np.minimum(to_negative, friction) / tangent_other)
 
 
 def _runs(body: Array) -> Integration:
@@ -272,7 +274,10 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 
 
 def _certificate(motion: Excitation, parameters: Mapping[str, Array]) -> Array:
-    return tilt_ratios(motion, standing_bodies(parameters))
+    # All that tilt_ratios asks of a body: it is asked before anything is run, and as a rule it says that nothing is.
+    b1, b2, _ = sides(parameters)
+    height = parameters["cg_height"]
+    return _tilts(motion, parameters["friction_static"], b1 / height, b2 / height)
 
 
 def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:

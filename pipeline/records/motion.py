@@ -77,12 +77,13 @@ class Motion:
         a = np.array(real, order="C", copy=True)
         if a.ndim != 2 or a.shape[0] != 3 or a.shape[1] == 0:
             raise InputError(f"motion {name!r}: acceleration must have the shape (3, n), rows x, y, z; it is {a.shape}")
-        bad = ~np.isfinite(a)
-        if bad.any():
-            row, sample = (int(i[0]) for i in np.nonzero(bad))
+        # NaN is the largest of whatever it is among.
+        largest = max(float(a.max()), -float(a.min()))
+        if not np.isfinite(largest):
+            row, sample = (int(i[0]) for i in np.nonzero(~np.isfinite(a)))
             raise InputError(f"motion {name!r}: component {'xyz'[row]} is {a[row, sample]} at sample {sample}")
-        if np.abs(a).max() > STRONGEST:
-            raise InputError(f"motion {name!r}: an acceleration of {np.abs(a).max():g} m/s2 is none; check its unit")
+        if largest > STRONGEST:
+            raise InputError(f"motion {name!r}: an acceleration of {largest:g} m/s2 is none; check its unit")
         step = real_number(dt)
         if not STEPS[0] <= step <= STEPS[1]:
             raise InputError(

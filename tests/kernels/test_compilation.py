@@ -75,7 +75,7 @@ kernels = (
     friction_line.friction_line_batch,
     friction_plane.friction_plane_batch,
     oscillator.oscillator_batch,
-    quiet.demand_ratio,
+    quiet.block_maxima,
 )
 print(json.dumps({k.__name__: len(k.signatures) for k in kernels}))
 """
