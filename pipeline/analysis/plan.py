@@ -372,7 +372,7 @@ def corners(
     return np.concatenate(sets)[order], analysis[order]
 
 
-_FEW = 256
+_FEW = 4096
 """Rows up to which they are told apart one by one, in a fifth of the time that sorting them takes."""
 
 

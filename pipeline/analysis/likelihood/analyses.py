@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.analysis.furniture import FurnitureFilter
-from pipeline.analysis.likelihood.draws import Draw, Ranges
+from pipeline.analysis.likelihood.draws import Draw, Draws, Ranges
 from pipeline.analysis.likelihood.shaking import direction
 from pipeline.analysis.plan import Indices, own_angle, requirements, unique_rows
 from pipeline.analysis.verdicts import capacity_of, utilisation
@@ -203,44 +203,74 @@ class Analyses:
     def _certain(self) -> bool:
         return bool(np.all(self.start <= 0.0) and np.all(self.end >= 1.0))
 
-    def chosen(self, draw: Draw, wanted: NDArray[np.bool_]) -> Indices:
-        """Return the places of those whose objects are wanted, and are in a sample what is run here."""
-        mine = wanted[self.of]
-        if not self._certain:
-            share = draw.share(CLASS)
-            mine = mine & (self.start <= share) & (share < self.end)
-        return np.flatnonzero(mine)
+    def chosen(self, draws: Sequence[Draw], wanted: NDArray[np.bool_]) -> list[Indices]:
+        """Return by sample the places of those whose objects are wanted, and are in it what is run here."""
+        mine = np.flatnonzero(wanted[self.of])
+        if self._certain:
+            return [mine] * len(draws)
+        start, end = self.start[mine], self.end[mine]
+        shares = (draw.share(CLASS) for draw in draws)
+        return [mine[(start <= share) & (share < end)] for share in shares]
 
     def uncertain(self, ranges: Ranges) -> NDArray[np.bool_]:
         """Return of which a measurement would settle a parameter; where the class is not certain, of the likeliest."""
         free = np.isnan(self.tied[0][ranges.name][1]) if ranges.name in self.tied[0] else np.True_
         return np.asarray((ranges.low < ranges.high) & free & (self.start <= 0.0))
 
-    def run(self, felt: Motion, draw: Draw, chosen: Indices, reached: NDArray[np.bool_]) -> None:
-        """Add what is reached in a sample, (s, objects), by those at some places."""
-        model = self.model
-        turned = direction(draw) + (90.0 if model.across else 0.0) if self.angle is None else self.angle
+    def run(
+        self,
+        felt: Sequence[Motion | None],
+        each: Sequence[Draw],
+        chosen: Sequence[Indices],
+        reached: NDArray[np.bool_],
+    ) -> None:
+        """Add what is reached in some samples, (n, s, objects), by those at some places.
+
+        Parameters
+        ----------
+        felt
+            What each sample shakes them by; None: nothing of it is chosen.
+        each
+            The samples.
+        chosen
+            Of each sample who is run.
+        reached
+            Filled in.
+        """
+        model, where = self.model, np.concatenate(chosen)
+        if where.size == 0:
+            return
+        draws = Draws(each, np.repeat(np.arange(len(each)), [which.size for which in chosen]))
         for at, way in enumerate(self.ways):
-            values = self._values(way, self.tied[at], draw, chosen, wide=bool(at) and self.angle is None)
-            along = None if model.directions != 1 or (model.resultant and self.angle is None) else turned + 90.0 * at
-            excitation = felt.excitation(along)
+            values = self._values(way, self.tied[at], draws, where, wide=bool(at) and self.angle is None)
+            excitations = [
+                None if one is None else self._excitation(one, draw, at) for one, draw in zip(felt, each, strict=True)
+            ]
             # What it shows to rest need not be integrated: of all hung works it leaves one of six.
-            moves = _moving(model, excitation, values)
-            if not moves.any():
+            moving = [_moving(model, *one) for one in _by_sample(excitations, draws.of, values)]
+            some = np.flatnonzero(np.concatenate(moving))
+            if some.size == 0:
                 continue
-            some = chosen[moves]
-            # Of those that are the same one is run.
-            first, of_each = unique_rows(np.column_stack([one[moves] for one in values.values()]))
-            ran = model.run(excitation, {name: one[moves][first] for name, one in values.items()}, 1, False)
-            columns = {name: column[of_each] for name, column in ran.items()}
-            capacity, room = (one.at(draw, some) for one in (self.capacity, self.room))
-            for state, mask in model.reached(columns, self._exceeded(columns, some, capacity), room).items():
-                reached[STATES.index(state), self.of[some]] |= mask
+            # Of those that are the same in a sample one is run.
+            first, of_each = unique_rows(np.column_stack([draws.of[some], *(one[some] for one in values.values())]))
+            runs = {name: one[some[first]] for name, one in values.items()}
+            ran = [model.run(*one, 1, False) for one in _by_sample(excitations, draws.of[some[first]], runs)]
+            columns = {name: np.concatenate([one[name] for one in ran])[of_each] for name in ran[0]}
+            mine, drawn = where[some], draws.take(some)
+            capacity, room = (one.at(drawn, mine) for one in (self.capacity, self.room))
+            for state, mask in model.reached(columns, self._exceeded(columns, mine, capacity), room).items():
+                reached[drawn.of[mask], STATES.index(state), self.of[mine[mask]]] = True
+
+    def _excitation(self, felt: Motion, draw: Draw, way: int) -> Excitation:
+        if self.model.directions != 1 or (self.model.resultant and self.angle is None):
+            return felt.excitation(None)
+        turned = direction(draw) + (90.0 if self.model.across else 0.0) if self.angle is None else self.angle
+        return felt.excitation(turned + 90.0 * way)
 
     def _values(
-        self, way: Sequence[Ranges], tied: Mapping[str, tuple[str, Array]], draw: Draw, chosen: Indices, *, wide: bool
+        self, way: Sequence[Ranges], tied: Mapping[str, tuple[str, Array]], draws: Draws, chosen: Indices, *, wide: bool
     ) -> dict[str, Array]:
-        values = {one.name: one.at(draw, chosen) for one in way}
+        values = {one.name: one.at(draws, chosen) for one in way}
         for name, (other, times) in tied.items():
             mine = times[chosen]
             values[name] = np.where(np.isnan(mine), values[name], mine * values[other])
@@ -258,6 +288,16 @@ class Analyses:
             demand[mine] = columns[output][mine]
         # What could not be followed may be anything.
         return ~(utilisation(demand, capacity) <= 1.0)
+
+
+def _by_sample(
+    excitations: Sequence[Excitation | None], of: Indices, values: Mapping[str, Array]
+) -> Iterator[tuple[Excitation, dict[str, Array]]]:
+    """Yield what shakes each sample with the values (n,) that are of it; those of a sample stand together."""
+    bounds = np.searchsorted(of, np.arange(len(excitations) + 1)).tolist()
+    for excitation, start, end in zip(excitations, bounds[:-1], bounds[1:], strict=True):
+        if excitation is not None and start < end:
+            yield excitation, {name: one[start:end] for name, one in values.items()}
 
 
 _HALVES = ("half_width", "half_width_other")

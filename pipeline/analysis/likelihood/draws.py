@@ -103,6 +103,31 @@ class Draw:
 
 
 @dataclass(frozen=True)
+class Draws:
+    """Some joint samples, of which several objects are drawn.
+
+    Attributes
+    ----------
+    each : sequence of Draw
+        Of as many at most.
+    of : ndarray of int, shape (n,)
+        Of each that is drawn which of them it is of.
+    """
+
+    each: Sequence[Draw]
+    of: NDArray[np.intp]
+
+    def share(self, name: str) -> Array:
+        """Return the shares of a distribution below which each lies that is drawn, (n,)."""
+        numbers = [draw.number for draw in self.each]
+        return np.asarray(_shares(self.each[0].most)[numbers, _places()[name]][self.of])
+
+    def take(self, some: NDArray[np.intp]) -> "Draws":
+        """Return the same samples, of some of what is drawn."""
+        return Draws(self.each, self.of[some])
+
+
+@dataclass(frozen=True)
 class Ranges:
     """A parameter of some objects.
 
@@ -138,25 +163,26 @@ class Ranges:
     def _lines(self) -> tuple[Array, Array]:
         return _lines(self.low, self.best, self.high)
 
-    def at(self, draw: Draw, chosen: NDArray[np.intp]) -> Array:
-        """Return the values of a joint sample, of some of the objects, (n,)."""
+    def at(self, draws: Draws, chosen: NDArray[np.intp]) -> Array:
+        """Return the values of joint samples, of one of the objects each, (n,)."""
         if self._certain:
             return self.best[chosen]
-        drawn = self._at(draw.share(self.name), chosen)
+        share = draws.share(self.name)
         for cause, mine in self.causes.items():
-            drawn = np.where(mine[chosen], self._at(draw.share(cause), chosen), drawn)
-        return drawn
+            share = np.where(mine[chosen], draws.share(cause), share)
+        return self._at(share, chosen)
 
-    def _at(self, share: float, chosen: NDArray[np.intp]) -> Array:
+    def _at(self, share: Array, chosen: NDArray[np.intp]) -> Array:
         low, best, high = self.low[chosen], self.best[chosen], self.high[chosen]
         if self.name in SWITCHES:
             return switched(share, low, best, high)
         lower, upper = self._lines
-        start, end, log = (lower if share < 0.5 else upper)[:, chosen]
+        start, end, log = np.where(share < 0.5, lower[:, chosen], upper[:, chosen])
         drawn, scales = start + (end - start) * share, log > 0.0
         np.exp(drawn, out=drawn, where=scales)
         # Together these two are np.clip, whose checks took longer than it.
-        return np.minimum(np.maximum(drawn, low), high)
+        inside: Array = np.minimum(np.maximum(drawn, low), high)
+        return inside
 
 
 def value_at(share: float, low: float, best: float, high: float) -> float:
@@ -194,7 +220,7 @@ def _lines(low: Array, best: Array, high: Array) -> tuple[Array, Array]:
     return lower, upper
 
 
-def switched(share: float, low: Array, best: Array, high: Array) -> Array:
+def switched(share: Array, low: Array, best: Array, high: Array) -> Array:
     """Return switches: each as is usual, but for `OTHERWISE` of the samples where it may be the other way."""
     other = np.where(best <= low, share >= 1.0 - OTHERWISE, share < OTHERWISE)
     return np.where((low < high) & other, np.where(best <= low, high, low), best)

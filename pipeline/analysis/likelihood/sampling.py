@@ -211,26 +211,23 @@ def sampled(
     harmed : ndarray of bool, shape (n, m)
         Which samples harmed which object.
     """
-    shape = harmful.ever.shape
-    total, hurting = np.zeros(shape, dtype=np.intp), np.zeros(shape, dtype=np.intp)
-    harmed = np.zeros((len(numbers), wanted.size), dtype=bool)
-    for at, number in enumerate(numbers):
-        draw = Draw(number, most)
-        reached = np.zeros(shape, dtype=bool)
-        for (furniture, isolator), those in groups.items():
-            chosen = [(one, which) for one in those if (which := one.chosen(draw, wanted)).size]
-            if not chosen:
-                continue
-            felt, falls = _felt(level.motions, furniture, isolator, draw)
-            for one, which in chosen:
-                one.run(felt, draw, which, reached)
-                if falls:
-                    reached[STATES.index(Harm.FALLS), one.of[which]] = True
-        hurts = reached & harmful.at(draw)
-        total += reached
-        hurting += hurts
-        harmed[at] = hurts.any(axis=0)
-    return total, hurting, harmed
+    draws = [Draw(number, most) for number in numbers]
+    reached = np.zeros((len(draws), *harmful.ever.shape), dtype=bool)
+    for (furniture, isolator), those in groups.items():
+        chosen = [one.chosen(draws, wanted) for one in those]
+        shaken = [
+            _felt(level.motions, furniture, isolator, draw) if any(which[at].size for which in chosen) else None
+            for at, draw in enumerate(draws)
+        ]
+        felt = [None if one is None else one[0] for one in shaken]
+        for one, which in zip(those, chosen, strict=True):
+            one.run(felt, draws, which, reached)
+            for at, told in enumerate(shaken):
+                if told is not None and told[1]:
+                    reached[at, STATES.index(Harm.FALLS), one.of[which[at]]] = True
+    hurts = np.stack([states & harmful.at(draw) for states, draw in zip(reached, draws, strict=True)])
+    harmed = np.asarray(hurts.any(axis=1))
+    return np.sum(reached, axis=0, dtype=np.intp), np.sum(hurts, axis=0, dtype=np.intp), harmed
 
 
 def _felt(
