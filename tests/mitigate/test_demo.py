@@ -18,7 +18,7 @@ from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.measures.base import held
 from pipeline.mitigate.search import AT_BEST, SIZED
 from pipeline.motions import read_site
-from pipeline.quantities import G
+from pipeline.quantities import Array, G
 from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRecord, Support, Verdict
 from pipeline.resources import resource
 from pipeline.store.runs import load_run
@@ -57,9 +57,18 @@ def worst(variants: tuple[tuple[Motion, ...], ...], of: Callable[[Motion], float
     return max(float(np.mean([of(one) for one in some])) for some in variants)
 
 
+@cache
+def pushes(motion: Motion) -> tuple[Array, Array]:
+    """|a_h| and g + a_z [m/s2] of those samples beside which none is pushed more and held less."""
+    push, weight = np.hypot(*motion.acceleration[:2]), G + motion.acceleration[2]
+    order = np.argsort(-push)
+    kept = order[weight[order] <= np.minimum.accumulate(weight[order])]
+    return push[kept], weight[kept]
+
+
 def push_of(motion: Motion) -> float:
     """A_max [m/s2], resultant."""
-    return float(np.hypot(*motion.acceleration[:2]).max())
+    return float(pushes(motion)[0].max())
 
 
 def lift_of(motion: Motion) -> float:
@@ -244,8 +253,8 @@ def test_pictures_fixed_to_the_wall_need_the_force_of_their_mass(
 
 def tipping(motion: Motion, height: float, half: float) -> float:
     """The largest of |a_h| h less (g + a_z) b [m2/s2]."""
-    x, y, z = motion.acceleration
-    return float((np.hypot(x, y) * height - (G + z) * half).max())
+    push, weight = pushes(motion)
+    return float((push * height - weight * half).max())
 
 
 def test_fixings_hold(record: RunRecord, motions: tuple[Motion, ...]) -> None:
