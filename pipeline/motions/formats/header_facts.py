@@ -39,6 +39,10 @@ _EARTHQUAKE = re.compile(
     r"^\s*(?:(?:record|rcrd) of\s+)?([A-Za-z][A-Za-z .,'-]{2,50}?)\s+(earthquake)(?=\s*$|\s{2}|\s+of\b)", re.IGNORECASE
 )
 _STATE = re.compile(r"(?<=, )[A-Z][a-z]\b")
+_PLACED = re.compile(r"\blocation:\s*(\S.*?)\s*$", re.IGNORECASE)
+_UNDERGROUND = re.compile(r"\b(?:dh|down-?hole|bore-?hole|depth)\b", re.IGNORECASE)
+_LENGTH = re.compile(r"(\d{1,4}(?:\.\d{1,3})?)\s?(m|ft)\b", re.IGNORECASE)
+_FOOT = 0.3048
 _ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}
 _KINDS = ("W", "S", "L", "B", "D")
 _SIDES = {"N": 1.0, "S": -1.0, "E": 1.0, "W": -1.0, "": 1.0}
@@ -147,18 +151,42 @@ def magnitude(sizes: dict[str, float | None]) -> dict[str, Any]:
     Parameters
     ----------
     sizes : dict of str to float or None
-        By "W", "S", "L", "B" or "D".
+        By "W", "S", "L", "B" or "D"; by "" one of a kind that nobody says, which comes last.
 
     Returns
     -------
     dict
         magnitude and magnitude_type; empty for none.
     """
-    for kind in _KINDS:
+    for kind in (*_KINDS, ""):
         size = sizes.get(kind)
         if size is not None and 0.1 <= size <= 10.0:
-            return {"magnitude": size, "magnitude_type": f"M{kind.lower()}"}
+            return {"magnitude": size} | ({"magnitude_type": f"M{kind.lower()}"} if kind else {})
     return {}
+
+
+def sensor(line: str) -> dict[str, Any]:
+    """Return where a sensor stood, by the line of its channel, such as "Location: DH array 10.7m".
+
+    Parameters
+    ----------
+    line : str
+        The line.
+
+    Returns
+    -------
+    dict
+        sensor_place, in the agency's words, and sensor_depth [m] below the ground, where these say one; without what
+        the line does not say.  A location code is no place.
+    """
+    found = _PLACED.search(line)
+    if found is None or not re.search(r"[A-Za-z]{3}|\bDH\b", found[1]):
+        return {}
+    place = found[1][:_LONGEST]
+    length = _LENGTH.search(place) if _UNDERGROUND.search(place) else None
+    if length is None:
+        return {"sensor_place": place}
+    return {"sensor_place": place, "sensor_depth": float(length[1]) * (_FOOT if length[2].lower() == "ft" else 1.0)}
 
 
 def number(keys: Keys, *names: str) -> float | None:
