@@ -31,7 +31,8 @@ _FORMAT = re.compile(r"\(\s*(\d{1,2})\s*f\s*(\d{1,2})\.\d{1,2}\s*\)", re.IGNOREC
 _CHANNEL = re.compile(r"^\s*chan\s*(\d{1,3}):\s*(.*?)\s*(?:\(|\blocation:|\s{2}|$)", re.IGNORECASE)
 _OF_STATION = re.compile(r"\(sta chn:\s*0*([1-9]\d{0,2})\)", re.IGNORECASE)
 _COMPONENT = re.compile(r"^\s*comp\s+(\S.{0,20}?)\s*(?:\s\d{1,3})?\s*$", re.IGNORECASE)
-STATION = re.compile(r"station (?:no\.|id\.|usc#)\s*(\w{1,8})", re.IGNORECASE)
+STATION = re.compile(r"station (?:no\.|id\.|usc#)\s*(?:(\w{1,8})(?![\w.]))?", re.IGNORECASE)
+"""The line of a station: its code, where there is one; RENADIC's goes on with the latitude."""
 _PEAKS = {
     "acceleration": re.compile(rf"peak\s+acceleration\s*=\s*({NUMBER})\s*cms?/sec/sec", re.IGNORECASE),
     "velocity": re.compile(rf"peak\s+velocity\s*=\s*({NUMBER})\s*cms?/sec\b", re.IGNORECASE),
@@ -79,7 +80,7 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
     text = [lines.text(top + i, "the header") for i in range(_TEXT_LINES[volume])]
     number, word, marked = named(lines, top, text)
     direction, assumed = trace_headers.component(word)
-    station = next((found[1] for line in text if (found := STATION.search(line))), "")
+    station = next((found[1] or "" for line in text if (found := STATION.search(line))), "")
     index = next((i for i in range(top, min(top + _FARTHEST, len(lines))) if _DATA.search(lines.text(i))), None)
     if index is None:
         wrong = f"no line such as '5696 points of accel data equally spaced at .010 sec' in the next {_FARTHEST} lines"

@@ -72,3 +72,13 @@ def test_a_channel_s_number_without_a_colon(line):
     first = traces(content.replace(old, line.encode()), "cosmos")[0]
     assert first.stats.kouros.orientation == 90.0
     assert first.stats.location == "01"
+
+
+def test_a_latitude_is_no_station_s_code():
+    """STATION NO.         20.252S   70.125W  ETNA, as RENADIC has it: it was station 20."""
+    line = b"STATION NO. 00001   33.929N, 118.260W  SMA-1"
+    content = national.volume1().replace(line, b"STATION NO.         20.252S   70.125W  ETNA")
+    first = traces(content, "volume1")[0]
+    assert first.stats.station == ""
+    assert (first.stats.kouros.latitude, first.stats.kouros.longitude) == (-20.252, -70.125)
+    assert first.stats.kouros.station_name == "NOWHERE"
