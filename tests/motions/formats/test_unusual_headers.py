@@ -8,7 +8,9 @@ from importlib import import_module
 import obspy
 import pytest
 
+from pipeline.motions import MotionError
 from pipeline.motions.formats import FormatError
+from pipeline.motions.reading import open_traces
 from tests.motions.formats import national
 from tests.motions.formats import specimens as hand
 
@@ -82,3 +84,19 @@ def test_a_latitude_is_no_station_s_code():
     assert first.stats.station == ""
     assert (first.stats.kouros.latitude, first.stats.kouros.longitude) == (-20.252, -70.125)
     assert first.stats.kouros.station_name == "NOWHERE"
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Response spectra          (Format v01.20 with 13 text lines)",
+        "RESPONSE AND FOURIER AMPLITUDE SPECTRA (86 periods, .04 - 10.0 sec)",
+        "Response and Fourier amplitude spectra (86 periods,  .04 - 10.0 sec)   for",
+        "Fourier amplitude spectrum of acceleration",
+    ],
+)
+def test_spectra_are_refused_as_such(tmp_path, title):
+    """Volume 3 of any agency: derived from a record, and no motion can be made of it."""
+    (tmp_path / "a.v3").write_text(f"{title}\nmore\n")
+    with pytest.raises(MotionError, match=r"holds (?:response and Fourier )?spectra.*give the file of"):
+        open_traces(tmp_path / "a.v3", [])
