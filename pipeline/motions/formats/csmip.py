@@ -42,7 +42,7 @@ _PEAK_UNITS = {"acceleration": "cm/sec/sec", "velocity": "cm/sec", "displacement
 _UNCORRECTED_PEAK = re.compile(rf"\bmax\s*=\s*({NUMBER})\s*g\b", re.IGNORECASE)
 _TIME = re.compile(
     r"(?:start|trigger)\s+time:\s*(\d{1,2})[/-](\d{1,2})[/-](\d{4}|\d\d),?\s*"
-    r"(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,3})?)\s*(UTC|GMT|P[SD]T)",
+    rf"(\d{{1,2}}):\s?(\d{{1,2}}):{header_facts.SECONDS}\s*(UTC|GMT|P[SD]T)",
     re.IGNORECASE,
 )
 _ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}

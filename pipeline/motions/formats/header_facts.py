@@ -19,9 +19,12 @@ _HYPOCENTRE = re.compile(
 )
 _COORDINATES = re.compile(rf"\b(?:coords:|station\s+(?:no\.|id\.)\s*\w{{0,8}}|station)\s+{_POINT}(?=\s|$)", re.I)
 _MAGNITUDE = re.compile(r"\bM([WSLBD])\s*=?\s*(\d\.\d{1,2})\b", re.IGNORECASE)
+SECONDS = r"\s{0,2}(\d{1,2}(?:\.\d{0,6})?|\.\d{1,6})"
+"""Seconds of a time as a pattern: Fortran prints those below one as ".0" behind blanks."""
+
 _ORIGIN = re.compile(
-    r"origin(?:\s?\([^)]{1,20}\))?:\s*(\d{1,4})/(\d{1,2})/(\d{1,4}),?\s+(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,6})?)\s*"
-    r"(UTC|GMT|P[SD]T)",
+    r"origin(?:\s?\([^)]{1,20}\))?:\s*(\d{1,4})/(\d{1,2})/(\d{1,4}),?\s+(\d{1,2}):\s?(\d{1,2}):"
+    rf"{SECONDS}\s*(UTC|GMT|P[SD]T)",
     re.IGNORECASE,
 )
 _MONTHS = ("JAN", "FEB", "MAR", "APR", "MAY", "JUN", "JUL", "AUG", "SEP", "OCT", "NOV", "DEC")
@@ -59,8 +62,9 @@ def about(**said: Any) -> dict[str, Any]:
     ----------
     **said : float, str or obspy.UTCDateTime
         Of event_name, event_time, event_latitude, event_longitude [degrees], event_depth_km, magnitude,
-        magnitude_type, latitude, longitude [degrees, of the station], station_name and distance_km; None, "" and what
-        cannot be are dropped, and so is a place without its other half, or at zero north and zero east.
+        magnitude_type, latitude, longitude [degrees, of the station], station_name, sensor_depth [m] and distance_km;
+        None, "" and what cannot be are dropped, and so is a place without its other half, or at zero north and zero
+        east.
 
     Returns
     -------

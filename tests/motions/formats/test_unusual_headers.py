@@ -9,7 +9,7 @@ import obspy
 import pytest
 
 from pipeline.motions import MotionError
-from pipeline.motions.formats import FormatError
+from pipeline.motions.formats import FormatError, header_facts
 from pipeline.motions.reading import open_traces
 from tests.motions.formats import national
 from tests.motions.formats import specimens as hand
@@ -24,6 +24,23 @@ def test_a_date_with_dashes():
     content = hand.csmip().replace(b"1/01/01, 00:00:45.0", b"2-13-12, 21:06:45.0")
     first = traces(content, "csmip")[0]
     assert (first.stats.starttime, first.stats.kouros.start) == (obspy.UTCDateTime("2012-02-13T21:06:45"), "record")
+
+
+@pytest.mark.parametrize(("said", "second"), [("02:33:  .0", 0.0), ("02:33:  .25", 0.25), ("02:33: 4.5", 4.5)])
+def test_seconds_that_fortran_printed(said, second):
+    """Start time:  8/29/18, 02:33:  .0 UTC (GPS), as a file of Pomona has it: the record had no time."""
+    content = hand.csmip(1).replace(b" 1/01/01, 00:00:45.0", f" 8/29/18, {said}".encode())
+    first = traces(content, "csmip")[0]
+    assert first.stats.starttime == obspy.UTCDateTime("2018-08-29T02:33") + second
+    assert first.stats.kouros.start == "record"
+    line = f"(ORIGIN: 08/29/18, {said} GMT)"
+    assert header_facts.of_text([line])["event_time"] == obspy.UTCDateTime("2018-08-29T02:33") + second
+
+
+def test_a_depth_that_esm_says():
+    """SENSOR_DEPTH_M of a borehole, by which it is no record of the surface."""
+    assert traces(hand.esm(SENSOR_DEPTH_M="30.5"), "esm")[0].stats.kouros.sensor_depth == 30.5
+    assert "sensor_depth" not in traces(hand.esm(SENSOR_DEPTH_M=""), "esm")[0].stats.kouros
 
 
 def test_a_station_with_two_places_has_none():
