@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,9 +10,12 @@ from typing import Any
 import numpy as np
 
 from pipeline.motions.grouping import FileTrace
+from pipeline.motions.station_metadata import place
 
 _TOGETHER = 60.0
 """s, how far apart two versions of one recording may have started."""
+
+_FREE_FIELD = re.compile(r"\bfree[- ]?field\b", re.IGNORECASE)
 
 _ACCELEROMETERS = "NG"
 """Instrument codes of SEED that are an accelerometer's; G stands for one in older European records."""
@@ -87,7 +91,8 @@ def chosen(traces: Sequence[FileTrace], wanted: Sequence[str], depth: Callable[[
         named = [one for one in traces if any(_named(word, one) for word in wanted)]
         if named:
             out = len(traces) - len(named)
-            return ChosenChannels(named, (f"{out} of {len(traces)} channels were not asked for",) if out else ())
+            left_out = [f"{out} of {len(traces)} channels were not asked for"] if out else []
+            return ChosenChannels(named, (*left_out, *_stood(named)))
     ids = [trace.id for _, trace in traces]
     twice = sorted({one for one in ids if traces[0][1].stats.station and ids.count(one) > 1})
     if twice:
@@ -100,15 +105,27 @@ def chosen(traces: Sequence[FileTrace], wanted: Sequence[str], depth: Callable[[
     left = _surface(list(traces), depth, told)
     if isinstance(left, str):
         return ChosenChannels(traces, (), left)
+    free = [one for one in left if _FREE_FIELD.search(place(one[1]))]
+    if len(left) > 3 and len(free) == 3:
+        told.append(f"{_codes(free)} stood in the free field, by the files; left: {_codes(_without(left, free))}")
+        left = free
     parts: dict[str, list[FileTrace]] = {}
     for one in left:
         parts.setdefault(one[1].id[:-1], []).append(one)
     whole = [part for part in parts.values() if len(part) == 3]
     if len(left) > 3 and whole:
         best = min(whole, key=lambda part: (_rank(part), part[0][1].id))
-        told.append(f"{_codes(best)} taken; left: {_codes([one for one in left if one not in best])}")
+        told.append(f"{_codes(best)} taken; left: {_codes(_without(left, best))}")
         left = best
-    return ChosenChannels(left, tuple(told))
+    return ChosenChannels(left, (*told, *_stood(left)))
+
+
+def _stood(traces: Sequence[FileTrace]) -> list[str]:
+    """Where the sensors of a record stood, in the words of its files: a floor or a deck is not the ground."""
+    places = list(dict.fromkeys(place(trace) for _, trace in traces if place(trace)))
+    return (
+        [f"its sensors stood here, by the files: {', '.join(map(repr, places))}"] if len(traces) <= 3 and places else []
+    )
 
 
 def one_version(records: Sequence[Sequence[FileTrace]], raw: bool) -> list[tuple[int, str]]:
@@ -162,6 +179,16 @@ def _same_recording(a: Sequence[FileTrace], b: Sequence[FileTrace]) -> bool:
 def _rank(traces: Sequence[FileTrace]) -> int:
     letters = {instrument(trace) for _, trace in traces}
     return 0 if letters <= set(_ACCELEROMETERS) else 1 if letters == {"L"} else 2 if letters == {"H"} else 0
+
+
+def _without(traces: Sequence[FileTrace], taken: Sequence[FileTrace]) -> list[FileTrace]:
+    return [one for one in traces if not any(one[1] is other for _, other in taken)]
+
+
+def described(trace: Any, orientation: float | str | None) -> str:
+    """Return a channel's code with its direction, and where its sensor stood, as far as its file says it."""
+    words = [str(word) for word in (orientation, place(trace)) if word is not None and word != ""]
+    return f"{trace.id} ({', '.join(words)})" if words else str(trace.id)
 
 
 def _codes(traces: Sequence[FileTrace]) -> str:

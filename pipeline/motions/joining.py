@@ -226,7 +226,7 @@ def _one_earthquake(known: Mapping[str, Any], said: Mapping[str, Any]) -> bool:
 _KOUROS = {
     "event_time": "earthquake of", "event_latitude": "epicentre's latitude", "event_longitude": "epicentre's longitude",
     "event_name": "earthquake", "station_name": "station name", "latitude": "station's latitude",
-    "longitude": "station's longitude", "sensor_depth": "sensor depth",
+    "longitude": "station's longitude", "sensor_depth": "sensor depth", "sensor_place": "sensor's place",
 }  # fmt: skip
 """What `header_facts.about` calls a fact, and a refusal."""
 

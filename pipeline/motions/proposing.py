@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from pipeline.motions.candidates import Unusable
 from pipeline.motions.catalogues import distance_km, matching
-from pipeline.motions.channel_choice import chosen, is_velocity, one_version, saturated
+from pipeline.motions.channel_choice import chosen, described, is_velocity, one_version, saturated
 from pipeline.motions.errors import MotionError
 from pipeline.motions.gathering import GatheredFiles
 from pipeline.motions.grouping import FileTrace, channels, grouped
@@ -264,10 +264,8 @@ class _Making:
         return f"{named} holds {counted(len(told), 'channel')} ({'; '.join(told)})"
 
     def _which(self) -> RecordProposal:
-        there = "; ".join(
-            f"{trace.id}{'' if one.orientation is None else f' ({one.orientation})'}"
-            for (_, trace), one in zip(self.traces, self._by_trace(), strict=True)
-        )
+        every = zip(self.traces, self._by_trace(), strict=True)
+        there = "; ".join(described(trace, one.orientation) for (_, trace), one in every)
         text = f"It has {len(self.traces)} channels: {there}.  Which three stood on the ground, or in the free field?"
         self._ask("channels", text, "--channels ID,ID,ID", [str(self.found.paths[self.traces[0][0]])])
         return RecordProposal(self.of, self.local, None, tuple(self.questions), tuple(self.told))

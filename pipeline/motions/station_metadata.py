@@ -6,6 +6,8 @@ import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from pipeline.motions.safe_names import one_line
+
 
 def metadata(inventories: Iterable[Any], trace: Any) -> Mapping[str, Any] | None:
     """Return what the first inventory that knows a channel at its time says of it, None where none does.
@@ -38,8 +40,14 @@ def _told(inventory: Any, trace: Any) -> Mapping[str, Any] | None:
 
 def depth(inventories: Iterable[Any], trace: Any) -> float | None:
     """Return the depth of a sensor below the ground's surface in m, None where nothing says it."""
-    said = metadata(inventories, trace)
-    return None if said is None or said.get("local_depth") is None else float(said["local_depth"])
+    said = metadata(inventories, trace) or {}
+    found = said.get("local_depth", trace.stats.get("kouros", {}).get("sensor_depth"))
+    return None if found is None else float(found)
+
+
+def place(trace: Any) -> str:
+    """Return where a sensor stood in the words of its file, such as "Deck Level near Abut 1"; "" where it has none."""
+    return one_line(str(trace.stats.get("kouros", {}).get("sensor_place", "")))
 
 
 def has_response(inventory: Any, trace: Any) -> bool:

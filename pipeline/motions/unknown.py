@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import codecs
+import re
 from pathlib import Path
 
 from pipeline.motions.errors import MotionError, refusal
 from pipeline.motions.formats import NAMES, record_text
 
+_SPECTRA = re.compile(rb"\b(?:response|fourier)\b[^\n]{0,60}\bspectr", re.IGNORECASE)
 _HDF5 = b"\x89HDF"
 _PACKED = {b"\x1f\x8b": "gzip", b"PK\x03\x04": "ZIP", b"BZh": "bzip2", b"\xfd7zXZ": "xz", b"7z\xbc\xaf": "7-Zip"}
 
@@ -43,6 +45,11 @@ def unknown(file: Path) -> MotionError:
         first = "it is no text"
     else:
         line = next(line for line in start.splitlines() if line.strip())
+        if _SPECTRA.search(line):
+            wrong = "holds spectra, which were derived from a record: of its motion they have the peaks alone"
+            return refusal(
+                file, "file", wrong, "give the file of the acceleration (such as volume 1 or 2 in place of 3)"
+            )
         first = f"its first line is {record_text.shown(record_text.printable(line))}"
     wrong = f"is of no format that is known; {first}.  What is read: {', '.join(NAMES.values())}; MiniSEED, SAC, K-NET"
     wrong += " and KiK-net, and whatever else obspy reads"

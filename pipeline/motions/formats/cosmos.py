@@ -18,7 +18,7 @@ from pipeline.quantities import Array
 
 _TITLE = re.compile(
     r"^\s*(raw|uncorrected|corrected) (?:acceleration|velocity|displacement)\b"
-    r".*\(format v\s?\d\d\.\d\d with\s+(\d{1,2}) ",
+    r".*\(format v\s?(\d\d\.\d\d) with\s+(\d{1,2}) ",
     re.IGNORECASE,
 )
 _FORMAT = re.compile(r"format\s*=?\s*\(\s*(?:\dp,?)?(\d{1,2})\s*[ifeg]\s*(\d{1,2})(?:\.\d{1,2})?\s*\)", re.IGNORECASE)
@@ -32,12 +32,13 @@ _END = re.compile(r"^\s*(?:end-of-data|/&)", re.IGNORECASE)
 _CODE = re.compile(r"\bcode:\s*(\w{1,8})-(\w{1,8})", re.IGNORECASE)
 _PLACE = re.compile(r"\bcode:\s*\w{1,8}-\w{1,8}\s+[A-Z]{2,8}\s+(\S.*?)\s*$", re.IGNORECASE)
 _SCNL = re.compile(r"<SCNL>\s*(\w{1,8})\.(\w{3})\.(\w{1,8})\.(\w{2}|--)")
-_CHANNEL = re.compile(r"sta chan?:?\s*([\d?]{1,3}):\s*(.*?)\s*(?:\(|$)", re.IGNORECASE)
+_CHANNEL = re.compile(r"sta chan?:?\s*([\d?]{1,3})(?::|\s)\s*(.*?)\s*(?:\(|\blocation:|\s{3}|$)", re.IGNORECASE)
 _UNKNOWN = re.compile(r"unknown/unspecified:\s*(-?\d{1,7}),\s*(-?\d{1,7}\.?\d{0,6})", re.IGNORECASE)
 _KINDS = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
 _UNITS = {2: "g", 4: "cm/s2", 7: "in/s2", 10: "gal", 11: "mg", 50: "counts"}
 _RATES = {("velocity", 5): 0.01, ("velocity", 8): 0.0254, ("displacement", 6): 0.01, ("displacement", 9): 0.0254}
 _WORDS: dict[int, Orientation] = {400: "up", 401: "down", 402: "vertical, sense not indicated"}
+_VERSION = 1.2
 _STAGES = {"raw": "V0", "uncorrected": "V1", "corrected": "V2"}
 
 
@@ -45,7 +46,7 @@ def is_format(source: Source) -> bool:
     """Whether a source is a COSMOS file, from its first line and its integer header."""
     lines = record_text.head(source).splitlines()
     title = _TITLE.search(lines[0]) if lines else None
-    return title is not None and any(_HEADER.search(line) for line in lines[: int(title[2]) + 2])
+    return title is not None and any(_HEADER.search(line) for line in lines[: int(title[3]) + 2])
 
 
 def _traces(lines: Lines, headonly: bool) -> list[Any]:
@@ -59,7 +60,10 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
 
 def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
     title = lines.match(top, _TITLE, "'Corrected acceleration (Format v01.20 with 13 text lines)'")
-    text = [lines.text(top + i, "the header") for i in range(int(title[2]))]
+    if float(title[2]) < _VERSION:
+        wrong = f"is of version {title[2]} of the format, whose headers have their numbers in other places"
+        raise lines.error(top, wrong, f"give the file of version {_VERSION:05.2f}")
+    text = [lines.text(top + i, "the header") for i in range(int(title[3]))]
     at_integers = top + len(text)
     integers, at_reals = _header(lines, at_integers, "integer")
     reals, index = _header(lines, at_reals, "real")
@@ -115,7 +119,7 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
         peak={"acceleration": None if factor is None or reals[63] == absent[1] else factor * float(reals[63])},
         series=more,
         more={"notes": "; ".join(notes)} if notes else {},
-        about=_about(text, reals, absent[1]),
+        about=_about(text, reals, absent[1]) | names["sensor"],
     )
     traces.append(trace)
     return index + 1
@@ -176,6 +180,7 @@ def _names(text: list[str], comments: list[str], integers: Array, absent: float,
         "network": network,
         "location": location,
         "channel": channel,
+        "sensor": next((header_facts.sensor(line) for line in text if _CHANNEL.search(line)), {}),
     }
 
 

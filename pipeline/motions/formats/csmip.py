@@ -28,9 +28,11 @@ _UNIT = re.compile(
     r"\b(?:in units(?: of)?|units\s?:|units of|in)\s*([a-z]{1,3}(?:/sec(?:/sec|2|\*\*2)?)?)(?=[\s).,]|$)", re.IGNORECASE
 )
 _FORMAT = re.compile(r"\(\s*(\d{1,2})\s*f\s*(\d{1,2})\.\d{1,2}\s*\)", re.IGNORECASE)
-_CHANNEL = re.compile(r"^\s*chan\s*(\d{1,3}):\s*(.*?)\s*(?:\(|\s{2}|$)", re.IGNORECASE)
+_CHANNEL = re.compile(r"^\s*chan\s*(\d{1,3}):\s*(.*?)\s*(?:\(|\blocation:|\s{2}|$)", re.IGNORECASE)
+_OF_STATION = re.compile(r"\(sta chn:\s*0*([1-9]\d{0,2})\)", re.IGNORECASE)
 _COMPONENT = re.compile(r"^\s*comp\s+(\S.{0,20}?)\s*(?:\s\d{1,3})?\s*$", re.IGNORECASE)
-STATION = re.compile(r"station (?:no\.|id\.|usc#)\s*(\w{1,8})", re.IGNORECASE)
+STATION = re.compile(r"station (?:no\.|id\.|usc#)\s*(?:(\w{1,8})(?![\w.]))?", re.IGNORECASE)
+"""The line of a station: its code, where there is one; RENADIC's goes on with the latitude."""
 _PEAKS = {
     "acceleration": re.compile(rf"peak\s+acceleration\s*=\s*({NUMBER})\s*cms?/sec/sec", re.IGNORECASE),
     "velocity": re.compile(rf"peak\s+velocity\s*=\s*({NUMBER})\s*cms?/sec\b", re.IGNORECASE),
@@ -39,12 +41,15 @@ _PEAKS = {
 _PEAK_UNITS = {"acceleration": "cm/sec/sec", "velocity": "cm/sec", "displacement": "cm"}
 _UNCORRECTED_PEAK = re.compile(rf"\bmax\s*=\s*({NUMBER})\s*g\b", re.IGNORECASE)
 _TIME = re.compile(
-    r"(?:start|trigger)\s+time:\s*(\d{1,2})/(\d{1,2})/(\d{4}|\d\d),?\s*"
-    r"(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,3})?)\s*(UTC|GMT|P[SD]T)",
+    r"(?:start|trigger)\s+time:\s*(\d{1,2})[/-](\d{1,2})[/-](\d{4}|\d\d),?\s*"
+    rf"(\d{{1,2}}):\s?(\d{{1,2}}):{header_facts.SECONDS}\s*(UTC|GMT|P[SD]T)",
     re.IGNORECASE,
 )
 _ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}
 _TEXT_LINES = {1: 13, 2: 25}
+_REALS = {1: 50, 2: 100}
+_NEAR = 0.02
+"""Degrees that two places of one station may differ by: headers round them to the hundredth."""
 _FARTHEST = 60
 _END = "/&"
 _KINDS = {"acc": "acceleration", "vel": "velocity", "dis": "displacement"}
@@ -75,12 +80,14 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
     text = [lines.text(top + i, "the header") for i in range(_TEXT_LINES[volume])]
     number, word, marked = named(lines, top, text)
     direction, assumed = trace_headers.component(word)
-    station = next((found[1] for line in text if (found := STATION.search(line))), "")
+    station = next((found[1] or "" for line in text if (found := STATION.search(line))), "")
     index = next((i for i in range(top, min(top + _FARTHEST, len(lines))) if _DATA.search(lines.text(i))), None)
     if index is None:
         wrong = f"no line such as '5696 points of accel data equally spaced at .010 sec' in the next {_FARTHEST} lines"
         raise lines.error(min(top + _FARTHEST, len(lines)), wrong)
-    precise = _precise_step(lines, index) if volume == 2 else None
+    reals = _reals(lines, index, volume)
+    # The 53rd real of volume 2 is the step in s.
+    precise = float(reals[52]) if volume == 2 and reals is not None and reals[52] > 0.0 else None
     series: dict[str, Array] = {}
     coarse: list[str] = []
     unit, dt, count = "", 0.0, 0
@@ -107,6 +114,12 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         raise lines.error(index, "the channel holds no acceleration")
     notes = [assumed] if assumed else []
     notes += [f"{' and '.join(coarse)} of a longer step not used"] if coarse else []
+    about = told(text)
+    if reals is not None and _elsewhere(about, float(reals[28]), float(reals[29])):
+        notes.append(
+            f"its text and its numbers ({reals[28]:g}, {reals[29]:g}) have two places of the station: neither used"
+        )
+        about = {key: value for key, value in about.items() if key not in {"latitude", "longitude"}}
     when, start_is = started(lines, top, text)
     peaks = _peaks(text, volume)
     if peaks["acceleration"] is not None:
@@ -124,7 +137,7 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         direction=direction,
         processed=volume == 2,
         station=station,
-        location=f"{number:02d}",
+        location=f"{_of_station(text) or number:02d}",
         channel=trace_headers.channel_code(1.0 / dt, direction, number if marked else None),
         start=when,
         start_is=start_is,
@@ -132,7 +145,7 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         peak=peaks,
         series={kind: Series(values) for kind, values in series.items() if kind != "acceleration"},
         more={"notes": "; ".join(notes)} if notes else {},
-        about=told(text),
+        about=about,
     )
     return trace, index
 
@@ -166,11 +179,18 @@ def named(lines: Lines, top: int, text: list[str]) -> tuple[int, str, bool]:
 
 
 def told(text: list[str]) -> dict[str, Any]:
-    """Return what the text of a channel's header says of earthquake and station, see `header_facts.about`."""
+    """Return what the text of a channel's header says of earthquake, station and sensor, see `header_facts.about`."""
     at = next((i for i, line in enumerate(text) if STATION.search(line)), len(text))
     name = header_facts.place_name(text[at + 1]) if at + 1 < len(text) else ""
     said = header_facts.of_text(text)
-    return header_facts.about(**said, event_name=header_facts.earthquake_name(text), station_name=name)
+    sensor = next((header_facts.sensor(line) for line in text if _CHANNEL.match(line)), {})
+    return header_facts.about(**said, event_name=header_facts.earthquake_name(text), station_name=name) | sensor
+
+
+def _of_station(text: list[str]) -> int:
+    """A channel's number at a station of several recorders, each of which counts its own from one; 0 for none."""
+    found = next((found for line in text if _CHANNEL.match(line) and (found := _OF_STATION.search(line))), None)
+    return int(found[1]) if found else 0
 
 
 def _is_over(lines: Lines, index: int) -> bool:
@@ -220,17 +240,21 @@ def _shape(lines: Lines, index: int, count: int) -> tuple[int, int]:
     return 8, 9 if size == 9 * fields else 10
 
 
-def _precise_step(lines: Lines, data_line: int) -> float | None:
-    # Volume 2 has 100 reals in the 13 lines before its data; the 53rd is the step in s.
-    top = data_line - 13
-    if top < 0:
-        return None
+def _reals(lines: Lines, data_line: int, volume: int) -> Array | None:
+    """The reals in the lines before a channel's data; older files leave some of them blank: None."""
+    count = _REALS[volume]
+    top = data_line - -(-count // 8)
     try:
-        reals, _ = blocks.fixed(lines, top, 100, 8, 10, "the real header")
+        return blocks.fixed(lines, top, count, 8, 10, "the real header")[0] if top >= 0 else None
     except record_text.FormatError:
-        # Older files leave fields of this header blank; the line of data then has the only word on the step.
         return None
-    return float(reals[52]) if reals[52] > 0.0 else None
+
+
+def _elsewhere(said: dict[str, Any], north: float, east: float) -> bool:
+    """Whether numbers are a place of the Americas, and another one than a header's text says."""
+    if "latitude" not in said or not (0.0 < abs(north) <= 90.0 and -180.0 <= east < 0.0):
+        return False
+    return max(abs(north - float(said["latitude"])), abs(east - float(said["longitude"]))) > _NEAR
 
 
 def started(lines: Lines, top: int, text: list[str]) -> tuple[Any, str]:

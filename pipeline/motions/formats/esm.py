@@ -125,6 +125,7 @@ def _about(keys: Keys) -> dict[str, Any]:
         event_depth_km=header_facts.number(keys, "EVENT_DEPTH_KM"),
         distance_km=header_facts.number(keys, "EPICENTRAL_DISTANCE_KM"),
         station_name=keys.get("STATION_NAME", (0, ""))[1],
+        sensor_depth=header_facts.number(keys, "SENSOR_DEPTH_M"),
     )
 
 

@@ -19,9 +19,12 @@ _HYPOCENTRE = re.compile(
 )
 _COORDINATES = re.compile(rf"\b(?:coords:|station\s+(?:no\.|id\.)\s*\w{{0,8}}|station)\s+{_POINT}(?=\s|$)", re.I)
 _MAGNITUDE = re.compile(r"\bM([WSLBD])\s*=?\s*(\d\.\d{1,2})\b", re.IGNORECASE)
+SECONDS = r"\s{0,2}(\d{1,2}(?:\.\d{0,6})?|\.\d{1,6})"
+"""Seconds of a time as a pattern: Fortran prints those below one as ".0" behind blanks."""
+
 _ORIGIN = re.compile(
-    r"origin(?:\s?\([^)]{1,20}\))?:\s*(\d{1,4})/(\d{1,2})/(\d{1,4}),?\s+(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,6})?)\s*"
-    r"(UTC|GMT|P[SD]T)",
+    r"origin(?:\s?\([^)]{1,20}\))?:\s*(\d{1,4})/(\d{1,2})/(\d{1,4}),?\s+(\d{1,2}):\s?(\d{1,2}):"
+    rf"{SECONDS}\s*(UTC|GMT|P[SD]T)",
     re.IGNORECASE,
 )
 _MONTHS = ("JAN", "FEB", "MAR", "APR", "MAY", "JUN", "JUL", "AUG", "SEP", "OCT", "NOV", "DEC")
@@ -39,6 +42,10 @@ _EARTHQUAKE = re.compile(
     r"^\s*(?:(?:record|rcrd) of\s+)?([A-Za-z][A-Za-z .,'-]{2,50}?)\s+(earthquake)(?=\s*$|\s{2}|\s+of\b)", re.IGNORECASE
 )
 _STATE = re.compile(r"(?<=, )[A-Z][a-z]\b")
+_PLACED = re.compile(r"\blocation:\s*(\S.*?)\s*$", re.IGNORECASE)
+_UNDERGROUND = re.compile(r"\b(?:dh|down-?hole|bore-?hole|depth)\b", re.IGNORECASE)
+_LENGTH = re.compile(r"(\d{1,4}(?:\.\d{1,3})?)\s?(m|ft)\b", re.IGNORECASE)
+_FOOT = 0.3048
 _ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}
 _KINDS = ("W", "S", "L", "B", "D")
 _SIDES = {"N": 1.0, "S": -1.0, "E": 1.0, "W": -1.0, "": 1.0}
@@ -55,8 +62,9 @@ def about(**said: Any) -> dict[str, Any]:
     ----------
     **said : float, str or obspy.UTCDateTime
         Of event_name, event_time, event_latitude, event_longitude [degrees], event_depth_km, magnitude,
-        magnitude_type, latitude, longitude [degrees, of the station], station_name and distance_km; None, "" and what
-        cannot be are dropped, and so is a place without its other half, or at zero north and zero east.
+        magnitude_type, latitude, longitude [degrees, of the station], station_name, sensor_depth [m] and distance_km;
+        None, "" and what cannot be are dropped, and so is a place without its other half, or at zero north and zero
+        east.
 
     Returns
     -------
@@ -147,18 +155,42 @@ def magnitude(sizes: dict[str, float | None]) -> dict[str, Any]:
     Parameters
     ----------
     sizes : dict of str to float or None
-        By "W", "S", "L", "B" or "D".
+        By "W", "S", "L", "B" or "D"; by "" one of a kind that nobody says, which comes last.
 
     Returns
     -------
     dict
         magnitude and magnitude_type; empty for none.
     """
-    for kind in _KINDS:
+    for kind in (*_KINDS, ""):
         size = sizes.get(kind)
         if size is not None and 0.1 <= size <= 10.0:
-            return {"magnitude": size, "magnitude_type": f"M{kind.lower()}"}
+            return {"magnitude": size} | ({"magnitude_type": f"M{kind.lower()}"} if kind else {})
     return {}
+
+
+def sensor(line: str) -> dict[str, Any]:
+    """Return where a sensor stood, by the line of its channel, such as "Location: DH array 10.7m".
+
+    Parameters
+    ----------
+    line : str
+        The line.
+
+    Returns
+    -------
+    dict
+        sensor_place, in the agency's words, and sensor_depth [m] below the ground, where these say one; without what
+        the line does not say.  A location code is no place.
+    """
+    found = _PLACED.search(line)
+    if found is None or not re.search(r"[A-Za-z]{3}|\bDH\b", found[1]):
+        return {}
+    place = found[1][:_LONGEST]
+    length = _LENGTH.search(place) if _UNDERGROUND.search(place) else None
+    if length is None:
+        return {"sensor_place": place}
+    return {"sensor_place": place, "sensor_depth": float(length[1]) * (_FOOT if length[2].lower() == "ft" else 1.0)}
 
 
 def number(keys: Keys, *names: str) -> float | None:

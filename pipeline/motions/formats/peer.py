@@ -17,6 +17,7 @@ from pipeline.motions.formats.record_text import Lines, Source
 
 _UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF (G\b|CM/S|.*)", re.IGNORECASE)
 _NEW = re.compile(r"NPTS\s*=\s*(\d{1,9})\s*,\s*DT\s*=\s*(\d{0,4}\.\d{1,9}(?:E-?\d)?)", re.IGNORECASE)
+_SEED = re.compile(r"([BEHLS][HNLG][A-Z0-9])(?:\d\d|--)?")
 _OLD = re.compile(r"^\s*(\d{1,9})\s+(\d{0,4}\.\d{1,9})\s+NPTS\s*,\s*DT", re.IGNORECASE)
 
 
@@ -40,7 +41,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     dt = blocks.step(lines, 3, float(found[2]))
     data = blocks.free(lines, 4, count, "acceleration")
     title = lines.text(1)
-    direction = trace_headers.orientation(title.rpartition(",")[2]) if "," in title else None
+    direction = _direction(title.rpartition(",")[2].strip()) if "," in title else None
     trace = trace_headers.make_trace(
         lines,
         data=data,
@@ -55,6 +56,13 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         more={"title": title},
     )
     return [trace]
+
+
+def _direction(word: str) -> trace_headers.Orientation:
+    """What the last item of a title says; in NGA-East it is a channel of SEED, such as BHZ00, with the location."""
+    code = _SEED.fullmatch(word.upper())
+    coded = trace_headers.seed_orientation(code[1]) if code else None
+    return trace_headers.orientation(word) if coded is None else coded
 
 
 read_format = record_text.reader(_traces)

@@ -21,7 +21,7 @@ _SHAPE = re.compile(r"^(\d{1,2})F(\d{1,2})\.(\d{1,2})$")
 _DAY = re.compile(r"^(\d{4})/(\d\d)/(\d\d)$")
 _CLOCK = re.compile(r"^(\d{1,2}):(\d{1,2}):(\d{1,2}(?:\.\d{0,6})?)$")
 _COORDINATE = re.compile(r":\s*(\d{1,3}(?:\.\d{1,8})?)\s*L(?:AT|ONG)\.?\s*([NSEWO])\b", re.IGNORECASE)
-_SIZE = re.compile(r"\bM([WSLB])\s*=\s*(\d\.\d{1,2})", re.IGNORECASE)
+_SIZE = re.compile(r"\bM([WSLB]?)\s*=\s*(\d\.\d{1,2})", re.IGNORECASE)
 _DATA = re.compile(r"^DATOS DE ACELERACION\b")
 _RULE = re.compile(r"^-{5,}\+")
 _MOST_LINES = 300

@@ -143,4 +143,4 @@ def _pairs(lines: Lines, index: int, count: int) -> tuple[Array, Array, int]:
 
 def _station(text: list[str]) -> str:
     found = csmip.STATION.search(text[4])
-    return found[1] if found and not re.fullmatch(r"0+", found[1]) else ""
+    return found[1] if found and found[1] and not re.fullmatch(r"0+", found[1]) else ""

@@ -1,0 +1,119 @@
+"""Headers that are written otherwise, each after an agency's own file: read where they can be, else refused."""
+
+from __future__ import annotations
+
+import io
+from importlib import import_module
+
+import obspy
+import pytest
+
+from pipeline.motions import MotionError
+from pipeline.motions.formats import FormatError, header_facts
+from pipeline.motions.reading import open_traces
+from tests.motions.formats import national
+from tests.motions.formats import specimens as hand
+
+
+def traces(content: bytes, name: str):
+    return import_module(f"pipeline.motions.formats.{name}").read_format(io.BytesIO(content))
+
+
+def test_a_date_with_dashes():
+    """Start time:  2-13-12, 21:06:45.0 UTC (GPS), as a file of Willow Creek has it."""
+    content = hand.csmip().replace(b"1/01/01, 00:00:45.0", b"2-13-12, 21:06:45.0")
+    first = traces(content, "csmip")[0]
+    assert (first.stats.starttime, first.stats.kouros.start) == (obspy.UTCDateTime("2012-02-13T21:06:45"), "record")
+
+
+@pytest.mark.parametrize(("said", "second"), [("02:33:  .0", 0.0), ("02:33:  .25", 0.25), ("02:33: 4.5", 4.5)])
+def test_seconds_that_fortran_printed(said, second):
+    """Start time:  8/29/18, 02:33:  .0 UTC (GPS), as a file of Pomona has it: the record had no time."""
+    content = hand.csmip(1).replace(b" 1/01/01, 00:00:45.0", f" 8/29/18, {said}".encode())
+    first = traces(content, "csmip")[0]
+    assert first.stats.starttime == obspy.UTCDateTime("2018-08-29T02:33") + second
+    assert first.stats.kouros.start == "record"
+    line = f"(ORIGIN: 08/29/18, {said} GMT)"
+    assert header_facts.of_text([line])["event_time"] == obspy.UTCDateTime("2018-08-29T02:33") + second
+
+
+def test_a_depth_that_esm_says():
+    """SENSOR_DEPTH_M of a borehole, by which it is no record of the surface."""
+    assert traces(hand.esm(SENSOR_DEPTH_M="30.5"), "esm")[0].stats.kouros.sensor_depth == 30.5
+    assert "sensor_depth" not in traces(hand.esm(SENSOR_DEPTH_M=""), "esm")[0].stats.kouros
+
+
+def test_a_station_with_two_places_has_none():
+    """40.941S in the text and 40.9406 in the numbers of one file of Willow Creek: no hemisphere is guessed."""
+    numbers = hand.fortran([0.0] * 28 + [40.9406, -123.6327] + [0.0] * 20, 8, "{:10.5f}")
+    zeros = hand.fortran([0.0] * 50, 8, "{:10.7f}")
+    assert hand.joined(zeros) in hand.csmip(1)
+    same = hand.csmip(1).replace(hand.joined(zeros), hand.joined(numbers))
+    said = traces(same, "csmip")[0].stats.kouros
+    assert (said.latitude, said.longitude) == (40.941, -123.633)
+    said = traces(same.replace(b"40.941N", b"40.941S"), "csmip")[0].stats.kouros
+    assert "latitude" not in said
+    assert "longitude" not in said
+    assert "two places of the station" in said.notes
+
+
+@pytest.mark.parametrize(("word", "said"), [("BHZ00", "up"), ("HNE--", 90.0), ("BH100", "BH100"), ("BH1", "BH1")])
+def test_a_title_of_nga_east_ends_in_a_channel_of_seed(word, said):
+    """ComalTX11-10-20, 10/20/2011, CCM, BHZ00: channel and location; 1 and 2 point nowhere that a code says."""
+    trace = traces(hand.at2(title=f"ComalTX11-10-20, 10/20/2011, CCM, {word}"), "peer")[0]
+    assert trace.stats.kouros.orientation == said
+
+
+def test_a_magnitude_of_no_kind():
+    """MAGNITUD(ES) : /M=7.1, as the RACM's records of 2017-09-19 have it."""
+    line = b"FECHA DEL SISMO [GMT]                  : 2004/01/01"
+    content = national.unam().replace(line, b"MAGNITUD(ES)                           : /M=7.1\r\n" + line)
+    said = traces(content, "unam")[0].stats.kouros
+    assert said.magnitude == 7.1
+    assert "magnitude_type" not in said
+
+
+def test_version_one_of_cosmos_is_refused_as_such():
+    """Its headers have the step and the time in other places: 'a time step of -0.999 s' was what was said."""
+    with pytest.raises(
+        FormatError, match=r"line 1: is of version 01\.00 of the format.*give the file of version 01\.20"
+    ):
+        traces(hand.cosmos().replace(b"Format v01.20", b"Format v01.00"), "cosmos")
+
+
+@pytest.mark.parametrize(
+    "line", ["Sta Chan   1  90    HNE           Location:   00", "Sta Cha: 1    90 deg (Rcrdr Chan  1)"]
+)
+def test_a_channel_s_number_without_a_colon(line):
+    """The azimuth of the text, where the integer header has none."""
+    content = hand.cosmos(azimuths=(-999,))
+    (old,) = [one for one in content.splitlines() if one.startswith(b"Sta Chan   1:")]
+    first = traces(content.replace(old, line.encode()), "cosmos")[0]
+    assert first.stats.kouros.orientation == 90.0
+    assert first.stats.location == "01"
+
+
+def test_a_latitude_is_no_station_s_code():
+    """STATION NO.         20.252S   70.125W  ETNA, as RENADIC has it: it was station 20."""
+    line = b"STATION NO. 00001   33.929N, 118.260W  SMA-1"
+    content = national.volume1().replace(line, b"STATION NO.         20.252S   70.125W  ETNA")
+    first = traces(content, "volume1")[0]
+    assert first.stats.station == ""
+    assert (first.stats.kouros.latitude, first.stats.kouros.longitude) == (-20.252, -70.125)
+    assert first.stats.kouros.station_name == "NOWHERE"
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Response spectra          (Format v01.20 with 13 text lines)",
+        "RESPONSE AND FOURIER AMPLITUDE SPECTRA (86 periods, .04 - 10.0 sec)",
+        "Response and Fourier amplitude spectra (86 periods,  .04 - 10.0 sec)   for",
+        "Fourier amplitude spectrum of acceleration",
+    ],
+)
+def test_spectra_are_refused_as_such(tmp_path, title):
+    """Volume 3 of any agency: derived from a record, and no motion can be made of it."""
+    (tmp_path / "a.v3").write_text(f"{title}\nmore\n")
+    with pytest.raises(MotionError, match=r"holds (?:response and Fourier )?spectra.*give the file of"):
+        open_traces(tmp_path / "a.v3", [])
