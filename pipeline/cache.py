@@ -51,6 +51,9 @@ _KEY = re.compile(r"(?:(?P<group>[0-9a-z]{1,16})-)?[0-9a-z]{1,64}")
 
 _NAME = re.compile(rf"(?P<version>[0-9a-f]{{{_VERSION}}}|{_LASTING})-(?P<key>{_KEY.pattern}){re.escape(_SUFFIX)}")
 
+_File = tuple[os.DirEntry[str], re.Match[str]]
+"""A file of the cache, and what its name says."""
+
 _FORMER = re.compile(r"[0-9a-f-]{32,}\.npz")
 """Names of files that versions of Kouros before this cache kept."""
 
@@ -222,7 +225,7 @@ class Cache:
         """
         for file, name in self._files(kind):
             if name["version"] == _LASTING and name["key"] not in keys:
-                _remove(file)
+                _remove(Path(file.path))
 
     def prune(self, *, days: float = 30.0, most_bytes: int = 200_000_000, using: Collection[str] = ()) -> None:
         """Remove what other code kept, then what was not used for some days, then what was used longest ago.
@@ -253,7 +256,8 @@ class Cache:
         Damage
         """
         for kind in KINDS:
-            for file, _ in self._files(kind):
+            for entry, _ in self._files(kind):
+                file = Path(entry.path)
                 try:
                     _read(file)
                 except FileNotFoundError:
@@ -266,32 +270,35 @@ class Cache:
             raise ValueError(f"{kind!r}, {key!r}: not what a file can be called after")
         return self.folder / kind / f"{_LASTING if lasting else code_version()[:_VERSION]}-{key}{_SUFFIX}"
 
-    def _files(self, kind: str) -> list[tuple[Path, re.Match[str]]]:
-        found = ((file, _NAME.fullmatch(file.name)) for file in sorted((self.folder / kind).glob(f"*{_SUFFIX}")))
-        return [(file, match) for file, match in found if match is not None]
+    def _files(self, kind: str) -> list[_File]:
+        # There are thousands: a path of each, and asking each by it, takes three times as long.
+        with suppress(OSError), os.scandir(self.folder / kind) as found:
+            each = sorted(found, key=lambda file: file.name)
+            return [(file, match) for file in each if (match := _NAME.fullmatch(file.name)) is not None]
+        return []
 
 
-def _prune(files: Collection[tuple[Path, re.Match[str]]], seconds: float, most_bytes: int, using: set[str]) -> None:
+def _prune(files: Collection[_File], seconds: float, most_bytes: int, using: set[str]) -> None:
     now, version = time.time(), code_version()[:_VERSION]
-    found: list[tuple[float, Path, int, str]] = []
+    found: list[tuple[float, os.DirEntry[str], int, str]] = []
     last: dict[str, float] = {}
     for file, name in files:
         if name["version"] == _LASTING:
             continue
         if name["version"] != version:
-            _remove(file)
+            _remove(Path(file.path))
             continue
         group = name["group"] or name["key"]
         with suppress(OSError):
             if group in using:
-                os.utime(file, (now, now))
+                os.utime(file.path, (now, now))
             facts = file.stat()
             found.append((facts.st_mtime, file, facts.st_size, group))
             last[group] = max(last.get(group, facts.st_mtime), facts.st_mtime)
     total = 0
     for _, file, size, group in sorted(found, key=lambda one: (-one[0], one[1].name)):
         if now - last[group] > seconds or total + size > most_bytes:
-            _remove(file)
+            _remove(Path(file.path))
         else:
             total += size
 

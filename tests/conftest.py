@@ -12,7 +12,7 @@ from contextlib import closing, contextmanager, suppress
 from importlib import import_module
 from itertools import count
 from pathlib import Path
-from shutil import rmtree
+from shutil import disk_usage, rmtree
 from typing import Any
 from urllib.parse import quote
 
@@ -30,9 +30,22 @@ SHARED = "KOUROS_TESTS_SHARED"
 """Names the folder of what all processes of a session have in common: it is the same whoever made it."""
 
 
+ROOMY = 8e9
+"""Bytes that must be free in a file system in memory for tests to write there: hundreds of nights wait for disks."""
+
+
 def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
+        memory = Path("/dev/shm")  # noqa: S108 - what is made there is made by mkdtemp
+        if "TMPDIR" not in os.environ and memory.is_dir() and min(disk_usage(memory).free, _available()) > ROOMY:
+            os.environ["TMPDIR"], tempfile.tempdir = str(memory), None
         os.environ[SHARED] = tempfile.mkdtemp(prefix="kouros-tests-")
+
+
+def _available() -> int:
+    import psutil
+
+    return int(psutil.virtual_memory().available)
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:

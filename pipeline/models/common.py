@@ -84,6 +84,15 @@ def magnified(motion: Excitation) -> tuple[Excitation, float]:
     return replace(motion, x=factor * motion.x, y=y), float(factor)
 
 
+def pushes(motion: Excitation) -> Array:
+    """Return |a_h| at the samples [m/s2], (n,).
+
+    To the last bit the same for all who ask, so that what a certificate shows to rest rests in its history too.
+    """
+    # A root is ten times as fast as hypot, and along one direction none is needed.
+    return np.abs(motion.x) if motion.y is None else np.sqrt(motion.x**2 + motion.y**2)
+
+
 class Quiet:
     """An excitation with the arrays that let resting objects skip ahead, prepared once for all objects."""
 
@@ -92,8 +101,7 @@ class Quiet:
         self.y = np.zeros_like(self.x) if motion.y is None else samples(motion.y)
         self.z = samples(motion.z)
         self.dt = motion.dt
-        # Along one direction no root is needed, for the same numbers: histories ask for each of many directions.
-        self.push = np.abs(self.x) if motion.y is None else np.sqrt(self.x**2 + self.y**2)
+        self.push = pushes(motion)
         self.peak = float(self.push.max())
         self.pushes = block_maxima(self.push)
         self.ratio = _grip(self.push, self.z)
@@ -134,7 +142,7 @@ def largest_push(motion: Excitation) -> float:
     float
         [m/s2].
     """
-    return float(np.max(np.abs(motion.x) if motion.y is None else np.hypot(motion.x, motion.y)))
+    return float(np.max(pushes(motion)))
 
 
 _STRONGEST = 64
@@ -160,7 +168,7 @@ def smallest_push(motion: Excitation) -> float:
     half = np.radians(0.25)
     turns = np.arange(0.0, np.pi, 2.0 * half)
     cosine, sine = np.cos(turns)[:, None], np.sin(turns)[:, None]
-    radius = np.hypot(motion.x, motion.y)
+    radius = pushes(motion)
     strongest = np.argpartition(radius, -min(_STRONGEST, radius.size))[-_STRONGEST:]
     # Written out: a product of matrices has other last digits on another number of cores.
     least = np.abs(cosine * motion.x[strongest] + sine * motion.y[strongest]).max(axis=1).min()
@@ -226,7 +234,7 @@ def lift_ratios(motion: Excitation) -> tuple[float, float]:
     """
     z = samples(motion.z)
     if motion.y is not None:
-        worst = largest_ratio(np.hypot(motion.x, motion.y), z, 1.0)
+        worst = largest_ratio(pushes(motion), z, 1.0)
         return worst, worst
     x = samples(motion.x)
     return largest_ratio(x, z, -1.0), largest_ratio(x, z, 1.0)

@@ -10,7 +10,16 @@ from pipeline.kernels.bounds import slip_bounds_batch
 from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.friction_line import CAP, friction_line_batch
 from pipeline.kernels.friction_plane import friction_plane_batch
-from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, after_record, contact_lost, lift_ratios, magnified
+from pipeline.models.common import (
+    ROUNDING,
+    SENSITIVE,
+    Quiet,
+    after_record,
+    contact_lost,
+    lift_ratios,
+    magnified,
+    pushes,
+)
 from pipeline.models.sharing import shared
 from pipeline.quantities import Array, G
 from pipeline.records import Bounds, Columns, Excitation
@@ -109,7 +118,7 @@ def stick_slip(
 def _most(motion: Excitation, w: Array, zeta: Array, mu_s: Array) -> Array:
     # Upper bounds (n, 4) of displacement, residual, path and acceleration, without integration: friction and dashpot
     # only take energy away, so that neither |u'| nor w |u| exceeds the integral of |a|.
-    push = np.hypot(motion.x, 0.0 if motion.y is None else motion.y)
+    push = pushes(motion)
     speed = float(push.sum()) * motion.dt
     path = speed * (push.size * motion.dt + (CAP if motion.tail is None else motion.tail))
     away = np.minimum(path, np.divide(speed, w, out=np.full_like(w, np.inf), where=w > 0.0))

@@ -231,7 +231,7 @@ class Scheduler:
                 yield here, self.context
             return
         # What reading the records and drawing the motions took is there for the workers.
-        give_back()
+        give_back(objects)
         context = replace(self.context, threads=1)
         if wanted.cluster:
             # Its workers may not see our folders.

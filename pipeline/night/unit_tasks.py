@@ -128,9 +128,10 @@ def assess_units(context: "RunContext", task: UnitTask) -> Assessments:
         for key, mine in units
         if any(a.assessment.fault or i.object_number in bad for a, i in zip(every[mine], items[mine], strict=True))
     )
+    number = len(items)
     del every, items
     # What follows takes far less.
-    give_back()
+    give_back(number)
     return Assessments(stored, seconds, tuple(faults), failed)
 
 

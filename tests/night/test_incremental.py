@@ -9,11 +9,10 @@ from random import Random
 import numpy as np
 import pytest
 
-from pipeline.execute import memory
 from pipeline.execute.pool import pool
 from pipeline.motions import site
 from pipeline.motions.pulses import WaveletPulse, shahi_baker_pulse
-from pipeline.night import scheduler, unit_tasks
+from pipeline.night import scheduler
 from pipeline.night.context import RunContext
 from pipeline.night.paging import paged
 from pipeline.night.unit_tasks import Assessments, UnitTask, assess_units
@@ -42,7 +41,7 @@ class Killed(BaseException):
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pages of five objects and batches of four, in this process, stored as they come.
 
-    What costs most and is not compared is left out: HTML, and looking for garbage.  A motion's pulse is found once.
+    What costs most and is not compared is left out: HTML.  A motion's pulse is found once.
     """
     monkeypatch.setattr(scheduler, "FEW", 4)
     monkeypatch.setattr(scheduler, "SHOWN", 4)
@@ -53,8 +52,6 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(page_renderer, "fill", lambda *_: "")
     monkeypatch.setattr(report_writer, "fill", lambda *_: "")
     monkeypatch.setattr(site, "shahi_baker_pulse", lambda velocity, dt: pulse(velocity.tobytes(), dt))
-    for module in (scheduler, unit_tasks, memory):
-        monkeypatch.setattr(module, "give_back", lambda: None)
 
 
 def cut_off(museum: Changing, monkeypatch: pytest.MonkeyPatch) -> None:
