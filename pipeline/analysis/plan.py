@@ -372,27 +372,17 @@ def corners(
     return np.concatenate(sets)[order], analysis[order]
 
 
-_FEW = 4096
-"""Rows up to which they are told apart one by one, in a fifth of the time that sorting them takes."""
-
-
-def _told_apart(bits: NDArray[np.uint64]) -> tuple[Indices, Indices]:
-    text, width = bits.tobytes(), bits.itemsize * bits.shape[1]
-    seen: dict[bytes, int] = {}
-    of_each = [seen.setdefault(text[at : at + width], len(seen)) for at in range(0, len(text), width)]
-    first, number = [], 0
-    for at, which in enumerate(of_each):
-        if which == number:
-            first.append(at)
-            number += 1
-    return np.array(first, dtype=np.intp), np.array(of_each, dtype=np.intp)
-
-
 def unique_rows(matrix: Array) -> tuple[Indices, Indices]:
-    """Return where each different row is first, (k,), and which of them each row is, (n,)."""
+    """Return where each different row is first, (k,), and which of them each row is, (n,).
+
+    By their bytes, which takes half to a seventh of the time that `numpy.unique` takes to sort them.
+    """
     # Bit for bit, so that NaN (not given) equals NaN.
-    bits = np.ascontiguousarray(matrix).view(np.uint64)
-    if bits.shape[0] <= _FEW:
-        return _told_apart(bits)
-    _, first, inverse = np.unique(bits, axis=0, return_index=True, return_inverse=True)
-    return first, inverse.reshape(-1)
+    text, width = np.ascontiguousarray(matrix).tobytes(), matrix.itemsize * matrix.shape[1]
+    seen: dict[bytes, int] = {}
+    of_each = np.array(
+        [seen.setdefault(text[at : at + width], len(seen)) for at in range(0, len(text), width)], np.intp
+    )
+    # A row is the first of its kind where its number is larger than all before it.
+    first = np.flatnonzero(of_each > np.concatenate([[-1], np.maximum.accumulate(of_each)[:-1]]))
+    return first, of_each
