@@ -3,8 +3,8 @@
 import csv
 import json
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from heapq import merge
 from itertools import takewhile
 from operator import itemgetter
@@ -29,6 +29,7 @@ from pipeline.settings import Settings
 
 if TYPE_CHECKING:
     from pipeline.collection.guess import Guess
+    from pipeline.collection.mapping import Mapping as CollectionMapping
 
 LOG_COLUMNS = ("row", "line", "object_number", "field", "what", "message", "remedy")
 
@@ -100,6 +101,19 @@ class Proposed:
     suspicions: tuple[Suspicion, ...]
 
 
+def _exchanged(
+    suspicions: Sequence[Suspicion], mapping: "CollectionMapping", choices: Mapping[str, str]
+) -> dict[str, str]:
+    """Return the columns of two sides that texts say are exchanged, each by the other's field; none that was chosen."""
+    for one in suspicions:
+        first, second = one.field.split(", ") if one.holds == "sides" else ("", "")
+        columns = [mapping.columns.get(field) for field in (first, second)]
+        names = [column.column for column in columns if column is not None and column.column is not None]
+        if len(names) == 2 and not {first, second} & choices.keys():
+            return {first: names[1], second: names[0]}
+    return {}
+
+
 def proposed(
     source: str, table: str | None = None, most: int = 10, choices: Mapping[str, str] | None = None
 ) -> Proposed:
@@ -112,6 +126,15 @@ def proposed(
 
     found = guess(source, table, choices)
     reading = read_items(source, found.mapping)
+    crossed = _exchanged(reading.suspicions, found.mapping, choices or {})
+    if crossed:
+        again = guess(source, table, {**(choices or {}), **crossed})
+        right = read_items(source, again.mapping)
+        if not any(one.holds == "sides" for one in right.suspicions):
+            told = next(one.message for one in reading.suspicions if one.holds == "sides")
+            kept = " ".join(f"--choose {field}={found.mapping.columns[field].column}" for field in crossed)
+            said = f"{told}: the two columns are taken the other way round; {kept} takes them as they are called"
+            found, reading = replace(again, doubts=(said, *again.doubts)), right
     step = max(len(reading.items) // most, 1)
     examples = tuple(_in_words(item) for item in reading.items[::step][:most])
     if is_address(source):

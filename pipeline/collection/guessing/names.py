@@ -1,4 +1,4 @@
-"""Names of columns, in eight languages and in Japanese -> fields of the record."""
+"""Names of columns, in ten languages and in Japanese -> fields of the record."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from unicodedata import combining, normalize
 from pydantic import AfterValidator
 
 from pipeline.collection.mapping import MAPPABLE
+from pipeline.collection.record import units_of
 from pipeline.collection.sources.heads import BETWEEN
 from pipeline.errors import InputError
 from pipeline.tables import table
@@ -23,14 +24,18 @@ TEXTS = "dimensions"
 LENGTH = "length_m"
 """The same of a length: it is the width, or else the depth, whichever has no column."""
 
-_INTERNAL = "identifier"
-"""The first of the names of object numbers that are a database's own."""
+_INTERNAL = {"object_number": "identifier", "gallery": "home location"}
+"""The first of the names of object numbers that are a database's own, and of those of usual places."""
 
 _UNITS = r"mm|cm|m|in|inch|inches|ft|kg|g|gr|lb|lbs|oz"
 _ENCLOSED = re.compile(rf"[(\[]\s*(?:in\s+|en\s+)?({_UNITS})\.?\s*[)\]]", re.IGNORECASE)
 _TRAILING = re.compile(rf"(?:[\s_,/]+(?:in|en)\s+|[\s_,/]+)({_UNITS})\.?\s*$", re.IGNORECASE)
+_JOINED = re.compile(r"(\w{4,}?)(mm|cm|in|ft|kg|lb|lbs|oz)", re.IGNORECASE)
+"""A name of one word that ends with a unit: "HEIGHTIN", "weightKg"."""
 _UNIT = {"inch": "in", "inches": "in", "lbs": "lb", "gr": "g"}
-_NUMBER_WORDS = frozenset(["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar"])
+_NUMBER_WORDS = frozenset(
+    ["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar", "αρ", "αριθμοσ", "numarası"]
+)
 _STOP = frozenset(
     {
         *("of", "the", "von", "van", "der", "die", "den", "das", "de", "del", "della", "dello", "di", "du", "des"),
@@ -100,7 +105,7 @@ def _names() -> dict[str, ColumnMeaning]:
     for row in rows:
         internal = False
         for rank, name in enumerate(row.names):
-            internal = internal or (row.field == "object_number" and name == _INTERNAL)
+            internal = internal or name == _INTERNAL.get(row.field)
             found.setdefault(plain(name), ColumnMeaning(row.field, rank, internal))
     return found
 
@@ -140,6 +145,12 @@ def unit_in(name: str) -> tuple[str, str | None]:
         if found is not None and (name[: found.start()] + name[found.end() :]).strip():
             unit = found[1].casefold()
             return f"{name[: found.start()]} {name[found.end() :]}".strip(), _UNIT.get(unit, unit)
+    joined = _JOINED.fullmatch(name.strip())
+    if joined is not None:
+        said = _names().get(plain(joined[1]))
+        unit = _UNIT.get(joined[2].casefold(), joined[2].casefold())
+        if said is not None and unit in units_of("height_m" if said.field == LENGTH else said.field):
+            return joined[1], unit
     return name, None
 
 
