@@ -39,6 +39,10 @@ _BREAK = re.compile(
 """Where the name of a thing ends and its description begins."""
 _INVERTED = re.compile(r"\s*((?:[^\W\d_]|[ '-])+?)\s*,\s*((?:[^\W\d_]|[ '-])+?)\s*")
 """What lists of names put behind what it is an own kind of: Desk, Drop-front; Lamp, Hanging."""
+_OF_SET = re.compile(
+    r"^[^:;,]*\b(?:set|service|servizio|servicio|servico|garniture|garnitur|garnitura)\s*:\s*(?=[^\W\d_])"
+)
+"""What stands ahead of a part of a set: Child's tea service: plate."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
 """What a maker calls a thing, which is no model of it: Clock Model No. 101."""
 _SUPPORT = re.compile(
@@ -402,7 +406,7 @@ def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleM
 @lru_cache(maxsize=16384)
 def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     """Return the known words and *endings of an object name or title, the likeliest name of the thing first."""
-    folded = _MARK.sub(" , ", fold(text))
+    folded = _OF_SET.sub("", _MARK.sub(" , ", fold(text)))
     parts = _BREAK.split(folded)
     # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
     start = of.spanning.match(folded) if of.spanning is not None else None

@@ -21,6 +21,7 @@ from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.registry import is_address
 from pipeline.collection.unit_audit import Suspicion
 from pipeline.night.source_state import mapping_of, source_key
+from pipeline.night.unknown_names import unknown_names
 from pipeline.operations.workspace import IMPORTS, Workspace
 from pipeline.records import Item, Problem
 from pipeline.report.text import safe_cell
@@ -52,6 +53,11 @@ class Imported:
         """Whether a column says what is on display, or a location does."""
         stores = any(not item.on_display and item.gallery != NOWHERE for item in self.reading.items)
         return self.reading.flagged or stores
+
+    @property
+    def unknown(self) -> str:
+        """What is to be said of words that name no class, as `unknown_names` says it."""
+        return unknown_names(self.reading.items)
 
     @property
     def problems(self) -> list[tuple[Item, Problem]]:
@@ -90,6 +96,7 @@ class Proposed:
 
     name  : for a file with the mapping, without its ending
     shown : the source in messages, without secrets
+    unknown : what is to be said of words that name no class, as `unknown_names` says it
     """
 
     name: str
@@ -99,6 +106,7 @@ class Proposed:
     items: int
     examples: tuple[str, ...]
     suspicions: tuple[Suspicion, ...]
+    unknown: str = ""
 
 
 def _exchanged(
@@ -144,8 +152,9 @@ def proposed(
             or "mapping"
         )
     else:
-        shown, named = Path(source).name, Path(source).stem
-    return Proposed(named, shown, found, reading.rows, len(reading.items), examples, reading.suspicions)
+        shown, named = source, Path(source).stem
+    unknown = unknown_names(reading.items)
+    return Proposed(named, shown, found, reading.rows, len(reading.items), examples, reading.suspicions, unknown)
 
 
 def _in_words(item: Item) -> str:
