@@ -10,6 +10,7 @@ from decimal import Context, Decimal
 from enum import StrEnum
 from math import isinf
 
+from pipeline.collection.dimensions.structured import words_of
 from pipeline.collection.display_words import flag_of
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.mapping import WRITTEN, ColumnMap
@@ -138,7 +139,7 @@ class Cells:
         str
             "" where nothing is recorded.
         """
-        parts = [self._clean(name, column, text) for text in texts]
+        parts = [self._clean(name, column, words_of(text)) for text in texts]
         if column.first:
             parts = [next((part for part in parts if not _missing(part, column)), "")]
         text = column.separator.join(part for part in parts if part)

@@ -165,7 +165,7 @@ def _fill_from(
                 values[field] = choice.value
                 cells.provenance.append(_provenance(field, what, choice, read))
     about = " ".join(str(values.get(field) or "") for field in _NAMING)
-    _tell(cells, read, (*read.notes, *doubts(read, chosen, about)), found)
+    _tell(cells, read, (*read.notes, *doubts(read, chosen, about)), found, sized=bool(given))
 
 
 def _unframed(given: Mapping[str, float], chosen: Chosen, read: Dimensions) -> dict[str, float]:
@@ -187,8 +187,11 @@ def _unframed(given: Mapping[str, float], chosen: Chosen, read: Dimensions) -> d
     return out
 
 
-def _tell(cells: Cells, read: Dimensions, notes: Sequence[DimensionNote], found: bool) -> None:
-    """Make problems of what a person should see of a text: the doubts, what was not understood, or all of it."""
+def _tell(cells: Cells, read: Dimensions, notes: Sequence[DimensionNote], found: bool, *, sized: bool) -> None:
+    """Make problems of what a person should see of a text: the doubts, what was not understood, or all of it.
+
+    sized : whether columns give sizes
+    """
     words = _WORDS.findall(read.text.casefold())
     spelled = [] if _SPELLED_NUMBERS.isdisjoint(words) else list(_spelled().finditer(read.text))
     worth = [
@@ -204,7 +207,8 @@ def _tell(cells: Cells, read: Dimensions, notes: Sequence[DimensionNote], found:
     only = len(problems) == sum(note.kind == "remainder" for note in worth)
     if not found and only and not any(note.kind in ("left_out", "variable") for note in notes):
         problems = []
-        if any(c.isalnum() for c in read.text):
+        # Words alone beside sizes in columns, such as "Objektmass", say nothing and hide nothing.
+        if any(c.isalnum() for c in read.text) and not (sized and not any(map(str.isnumeric, read.text))):
             what = "says no size of the object itself" if read.parts else "holds no dimension that can be read"
             message = f"the text {read.text[:80]!r} {what}"
             problems = [Problem("dimensions", message, "write it as in H 10 x W 5 x D 3 cm, or leave it empty")]

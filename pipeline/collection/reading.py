@@ -394,8 +394,11 @@ class RowReader:
             self.places.append((row.number, row.line))
 
     def _is_heading(self, number: str, row: Row) -> bool:
-        """Say whether a row parts the others, such as FURNITURE, or sums them up, such as TOTAL 168."""
-        if any(map(str.isnumeric, number)):
+        """Say whether a row parts the others, such as FURNITURE, or sums them up, such as TOTAL 168.
+
+        It is told by its empty place: where no column tells places, nothing is taken for one.
+        """
+        if any(map(str.isnumeric, number)) or not any(field == "gallery" for field, *_ in self._columns):
             return False
         others = {at for _, _, places in self._columns for at in places} | set(self._texts or ())
         return not any(any(map(str.isalpha, row.cells[at])) for at in others - set(self._key))

@@ -48,6 +48,8 @@ _GLUED = re.compile(r"(\w{3,}?)(?:number|nummer|num|nr|no)")
 """A name of one word that ends with a word for number: "accessionnum"."""
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _OTHER = re.compile(r"[^\w]+|_")
+_SHORT = 4
+"""Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
 _WEAK = 1000
 """Rank of a name that is only part of what stands in the head."""
 
@@ -108,6 +110,22 @@ def _names() -> dict[str, ColumnMeaning]:
             internal = internal or name == _INTERNAL.get(row.field)
             found.setdefault(plain(name), ColumnMeaning(row.field, rank, internal))
     return found
+
+
+@cache
+def _singular_names() -> dict[str, ColumnMeaning]:
+    """Return what names say in the singular, those left out that say two things then: "Matières", "object_names"."""
+    found: dict[str, ColumnMeaning] = {}
+    several = set()
+    for name, what in _names().items():
+        one = _singular(name)
+        if found.setdefault(one, what).field != what.field:
+            several.add(one)
+    return {name: what for name, what in found.items() if name not in several}
+
+
+def _singular(name: str) -> str:
+    return " ".join(word[:-1] if len(word) > _SHORT and word.endswith("s") else word for word in name.split())
 
 
 def plain(name: str) -> str:
@@ -186,6 +204,10 @@ def named(name: str) -> ColumnMeaning | None:
         return ColumnMeaning(name, 0)
     for form in _forms(name):
         found = _names().get(form)
+        if found is not None:
+            return found
+    for form in _forms(name):
+        found = _singular_names().get(_singular(form))
         if found is not None:
             return found
     return _within(name)
