@@ -37,6 +37,12 @@ _BREAK = re.compile(
     r"[,:;|()\[\]/\"]|\s(?:of|with|for|in|from|by|and|on|showing|depicting|mit|von|aus|und|fur|zum|zur|avec|de|du|des|et|a|au|aux|pour|sur|di|da|con|per|al|alla|su|y|para|sobre|e|com|em|met|van|en|voor|op|cu|din|pe|pentru|銘)\s"
 )
 """Where the name of a thing ends and its description begins."""
+_INVERTED = re.compile(r"\s*((?:[^\W\d_]|[ '-])+?)\s*,\s*((?:[^\W\d_]|[ '-])+?)\s*")
+"""What lists of names put behind what it is an own kind of: Desk, Drop-front; Lamp, Hanging."""
+_OF_SET = re.compile(
+    r"^[^:;,]*\b(?:set|service|servizio|servicio|servico|garniture|garnitur|garnitura)\s*:\s*(?=[^\W\d_])"
+)
+"""What stands ahead of a part of a set: Child's tea service: plate."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
 """What a maker calls a thing, which is no model of it: Clock Model No. 101."""
 _SUPPORT = re.compile(
@@ -400,11 +406,12 @@ def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleM
 @lru_cache(maxsize=16384)
 def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     """Return the known words and *endings of an object name or title, the likeliest name of the thing first."""
-    folded = _MARK.sub(" , ", fold(text))
+    folded = _OF_SET.sub("", _MARK.sub(" , ", fold(text)))
     parts = _BREAK.split(folded)
     # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
     start = of.spanning.match(folded) if of.spanning is not None else None
     out = [] if start is None else list(_spelt(of, start.group().split()))
+    out += _inverted(folded, of)
     only = _PART.search(folded)
     if only is not None:
         out += _spelt(of, [only.group(1)])
@@ -415,6 +422,16 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
                 if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
                     out.append(word)
     return tuple(out)
+
+
+def _inverted(folded: str, of: RuleTable) -> Iterator[str]:
+    """Yield the phrases that a name says in inverted order, as the nomenclature of many museums does: Clock, Wall."""
+    found = _INVERTED.fullmatch(folded)
+    if found is not None:
+        kind, thing = _WORD.findall(found[2]), _WORD.findall(found[1])
+        for before, word in _known(of, thing[-1]) if kind and thing else ():
+            if before and before == tuple((*kind, *thing[:-1])[-len(before) :]):
+                yield word
 
 
 def _spelt(of: RuleTable, words: list[str]) -> Iterator[str]:

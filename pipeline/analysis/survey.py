@@ -365,7 +365,7 @@ def _request(trial: _Trial, settles: float) -> MeasurementRequest:
     return MeasurementRequest(
         item.object_number,
         item.gallery,
-        item.title,
+        item.called,
         measurable.field,
         measurable.unit,
         low,

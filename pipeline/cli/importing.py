@@ -164,6 +164,7 @@ def _guess(
             "doubts": found.guess.doubts,
             "questions": [asdict(question) for question in found.guess.questions],
             "sure": found.guess.sure,
+            "unknown": found.unknown,
             "rows": found.rows,
             "examples": found.examples,
         }
@@ -177,7 +178,8 @@ def _guess(
     if target is not None:
         with target.open("x", encoding="utf-8") as stream:
             stream.write(found.guess.text)
-        click.echo(f"written: {target}; now: kouros import {found.shown} --mapping {target} --dry-run", err=wanted_json)
+        now = shlex.join(["kouros", "import", found.shown, "--mapping", str(target), "--dry-run"])
+        click.echo(f"written: {target}; now: {now}", err=wanted_json)
     elif not (wanted_json or dry_run):
         click.echo("nothing was written; --write FILE writes it")
 
@@ -201,7 +203,7 @@ def _show(found: "Proposed") -> None:
     for line in found.examples:
         click.echo(f"  {line}")
     listed("sure", list(found.guess.sure))
-    listed("to look at", list(found.guess.doubts))
+    listed("to look at", [*found.guess.doubts, *filter(None, [found.unknown])])
     listed(
         "to choose",
         [
@@ -308,6 +310,7 @@ def _plain(done: "Imported") -> dict[str, Any]:
         "rejected": [asdict(r) for r in reading.rejected],
         "doubtful": sum(1 for item in reading.items if item.problems),
         "display_said": done.display_said,
+        "unknown": done.unknown,
         "suspicions": [asdict(s) for s in reading.suspicions],
         "choices": [asdict(s) for s in reading.choices],
         "problems": [{"object_number": item.object_number, **asdict(p)} for item, p in done.problems],
@@ -344,6 +347,8 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     )
     if not done.display_said:
         click.echo(unsaid(sum(item.on_display for item in reading.items)))
+    if done.unknown:
+        click.echo(done.unknown)
     if dry_run:
         return
     if done.log is not None:

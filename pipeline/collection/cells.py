@@ -6,10 +6,11 @@ import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from decimal import Context
+from decimal import Context, Decimal
 from enum import StrEnum
 from math import isinf
 
+from pipeline.collection.dimensions.structured import words_of
 from pipeline.collection.display_words import flag_of
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.mapping import WRITTEN, ColumnMap
@@ -73,6 +74,8 @@ class Cells:
         float or None
             In SI; None where none is recorded or none can be accepted (then with a problem).
         """
+        if column.units:
+            return self._sum(name, column, texts)
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
@@ -136,7 +139,9 @@ class Cells:
         str
             "" where nothing is recorded.
         """
-        parts = [self._clean(name, column, text) for text in texts]
+        parts = [self._clean(name, column, words_of(text)) for text in texts]
+        if column.first:
+            parts = [next((part for part in parts if not _missing(part, column)), "")]
         text = column.separator.join(part for part in parts if part)
         if _missing(text, column):
             return ""
@@ -269,6 +274,28 @@ class Cells:
             What is wrong, and what mends it.
         """
         self._note(name, column, message, remedy)
+
+    def _sum(self, name: str, column: ColumnMap, texts: Sequence[str]) -> float | None:
+        """Return what several columns say together, each in its unit; none of them says anything where all are 0."""
+        units, exact_sum, written = units_of(name), Decimal(0), list[str]()
+        for text, unit in zip((text.strip(_SPACE) for text in texts), column.units, strict=True):
+            value = None if _missing(text, column) else self._parse(name, column, text)
+            if text and value is None and not _missing(text, column):
+                return None  # a part that cannot be read leaves no sum
+            if value:
+                exact = _EXACT.create_decimal(self._plain(text))
+                exact_sum = _EXACT.fma(exact, _EXACT.create_decimal(repr(units[unit])), exact_sum)
+                written.append(f"{as_text(exact)} {unit}")
+        if not written:
+            return None
+        total = float(exact_sum)
+        reason = _implausible(name, total)
+        if reason:
+            shown = f"{' '.join(written)} = {total:.6g} {plausible()[name].unit} {reason}"
+            self._note(name, column, shown, _remedy(total))
+            return None
+        self.provenance.append(Provenance(name, Origin.MEASURED, " ".join(written)))
+        return total
 
     def _written(self, name: str, column: ColumnMap, text: str) -> float | None:
         found = of_cell(text, plausible()[name].unit, self.decimal)

@@ -12,7 +12,7 @@ from tomlkit.items import Table
 
 from pipeline.collection.display_words import flag_of, says_away
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.guessing.columns import Column, candidates
+from pipeline.collection.guessing.columns import Column, candidates, usual_place
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
 from pipeline.collection.guessing.names import bare
@@ -172,7 +172,10 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
             found["image"] = picture
         if "image" in found:
             told.doubts.append(pictures_said(columns, found["image"], found.values()))
-    fields, used = Fields(columns, told.choices, told.doubts, told.questions).mapped(found)
+    usual = None if "gallery" in told.choices else usual_place(columns, found)
+    if usual is not None:
+        told.questions[:] = [question for question in told.questions if question.key != "gallery"]
+    fields, used = Fields(columns, told.choices, told.doubts, told.questions, usual).mapped(found)
     document["columns"] = fields
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")
@@ -180,8 +183,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
-    gallery = found.get("gallery")
-    stores = list(filter(says_away, gallery.distinct)) if gallery is not None else []
+    places = [column for column in (found.get("gallery"), usual) if column is not None]
+    stores = list(dict.fromkeys(filter(says_away, (place for column in places for place in column.distinct))))
     if stores:
         document["display"] = {"not_on_display": stores[:MOST_STORES]}
         told.doubts.append(_said_of(stores))

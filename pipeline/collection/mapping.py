@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -120,6 +120,14 @@ class ColumnMap(MappingPart):
         default=(), description="Several columns, joined to one text; empty cells left out."
     )
     separator: str = Field(default=" ", description="What stands between the texts of several columns.")
+    first: bool = Field(
+        default=False,
+        description="Of several columns only the first that says anything counts: a temporary place, else the usual.",
+    )
+    units: tuple[str, ...] = Field(
+        default=(),
+        description='Of several columns that add up, the unit of each: ["ft", "in"] for feet beside inches.',
+    )
     unit: str | None = Field(
         default=None,
         description="Unit of the column's numbers; required for every length and mass, for them only. "
@@ -167,7 +175,7 @@ class Texts(MappingPart):
     )
     language: str = Field(
         default="",
-        description="Language of the texts (en, fr, de, nl, it, es, pt, ro), which settles short labels such as L. and "
+        description="Language of the texts (en, fr, de, nl, it, es, pt, ro, el, tr), which settles short labels, L. or "
         "D.; without it the words of each text do.",
     )
     framed: bool = Field(default=True, description="Whether works in frames hang in them: then the frame counts.")
@@ -414,6 +422,8 @@ def _fault(field: str, column: ColumnMap) -> str:
     kind, units = KINDS.get(field, "number"), units_of(field)
     if column.constant is not None:
         return _constant_fault(field, kind, column)
+    if (column.units or column.first) and ((fault := _several_fault(kind, units, column)) or column.units):
+        return fault
     if units and column.unit not in units and column.unit != WRITTEN:
         given = "has no unit" if column.unit is None else f"cannot be in {column.unit!r}"
         return f'a {"length" if units is LENGTHS else "mass"} {given}; add unit = "..." with one of {", ".join(units)}'
@@ -442,6 +452,18 @@ def _fault(field: str, column: ColumnMap) -> str:
             return f"values: {text!r} must mean a text, in quotes, not {meaning!r}"
     if len({text.casefold() for text in column.values}) < len(column.values):
         return "values: two texts differ in capitals only, which count the same; leave one out"
+    return ""
+
+
+def _several_fault(kind: str, units: Collection[str], column: ColumnMap) -> str:
+    if column.first:
+        return (
+            "" if kind == "text" and len(column.columns) > 1 and not column.units else "first is for texts of columns"
+        )
+    if not units or len(column.columns) != len(column.units) or not set(column.units) <= set(units):
+        return f"units needs one of {', '.join(units) or 'none'} for each of its columns, of a length or a mass"
+    if column.unit is not None or column.unit_column is not None or column.values or column.by_hand:
+        return "units says all of units; leave out unit, unit_column, values and by_hand"
     return ""
 
 

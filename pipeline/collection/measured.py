@@ -8,8 +8,10 @@ from functools import cache
 from typing import Any
 
 from pipeline.collection.cells import Cells
-from pipeline.collection.dimensions import Choice, DimensionNote, Dimensions, agree, choose, doubts, parse
+from pipeline.collection.dimensions import Choice, Chosen, DimensionNote, Dimensions, agree, choose, doubts, parse
+from pipeline.collection.dimensions.choice import HANGS
 from pipeline.collection.dimensions.lexicon import unit_words
+from pipeline.collection.dimensions.parts import FRAMED
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.mapping import ColumnMap, Texts
 from pipeline.collection.measured_cell import written
@@ -133,6 +135,7 @@ def _fill_from(
     texts_hold: bool,
 ) -> None:
     chosen = choose(read, hung=mapping.framed)
+    unframed = _unframed(given, chosen, read)
     found = False
     for what, fields in FIELDS.items():
         choice: Choice | None = getattr(chosen, what)
@@ -144,7 +147,13 @@ def _fill_from(
             cells.problems.append(Problem("mass_kg", message, "weigh the whole object"))
             continue
         for field in fields:
-            if field in given:
+            if field in unframed:
+                # The column tells the work and the text its frame too, which is what hangs.
+                cells.pairs.append((field, given[field], unframed[field]))
+                values[field] = choice.value
+                cells.provenance = [of for of in cells.provenance if of.field != field]
+                cells.provenance.append(_provenance(field, what, choice, read))
+            elif field in given:
                 cells.pairs.append((field, given[field], choice.value))
                 if _differs(field, given[field], choice, cells, texts_hold) and texts_hold:
                     values[field] = choice.value
@@ -156,11 +165,33 @@ def _fill_from(
                 values[field] = choice.value
                 cells.provenance.append(_provenance(field, what, choice, read))
     about = " ".join(str(values.get(field) or "") for field in _NAMING)
-    _tell(cells, read, (*read.notes, *doubts(read, chosen, about)), found)
+    _tell(cells, read, (*read.notes, *doubts(read, chosen, about)), found, sized=bool(given))
 
 
-def _tell(cells: Cells, read: Dimensions, notes: Sequence[DimensionNote], found: bool) -> None:
-    """Make problems of what a person should see of a text: the doubts, what was not understood, or all of it."""
+def _unframed(given: Mapping[str, float], chosen: Chosen, read: Dimensions) -> dict[str, float]:
+    """Return what a text says of the work without its frame, where columns say the same and the frame was chosen.
+
+    Field -> number [m]; none where any of the columns says something else than the text does of the work.
+    """
+    sides = {field: what for what, (field, *_) in FIELDS.items() if what in ("height", "width", "depth")}
+    out: dict[str, float] = {}
+    for field in sides.keys() & given.keys():
+        choice: Choice | None = getattr(chosen, sides[field])
+        if choice is None or not choice.why.endswith(HANGS):
+            return {}
+        own = [p.value for p in read.parts if p.dimension == sides[field] and not FRAMED.intersection(p.name.split())]
+        same = next((value for value in own if value is not None and agree(given[field], value, "length")), None)
+        if same is None:
+            return {}
+        out[field] = same
+    return out
+
+
+def _tell(cells: Cells, read: Dimensions, notes: Sequence[DimensionNote], found: bool, *, sized: bool) -> None:
+    """Make problems of what a person should see of a text: the doubts, what was not understood, or all of it.
+
+    sized : whether columns give sizes
+    """
     words = _WORDS.findall(read.text.casefold())
     spelled = [] if _SPELLED_NUMBERS.isdisjoint(words) else list(_spelled().finditer(read.text))
     worth = [
@@ -176,7 +207,8 @@ def _tell(cells: Cells, read: Dimensions, notes: Sequence[DimensionNote], found:
     only = len(problems) == sum(note.kind == "remainder" for note in worth)
     if not found and only and not any(note.kind in ("left_out", "variable") for note in notes):
         problems = []
-        if any(c.isalnum() for c in read.text):
+        # Words alone beside sizes in columns, such as "Objektmass", say nothing and hide nothing.
+        if any(c.isalnum() for c in read.text) and not (sized and not any(map(str.isnumeric, read.text))):
             what = "says no size of the object itself" if read.parts else "holds no dimension that can be read"
             message = f"the text {read.text[:80]!r} {what}"
             problems = [Problem("dimensions", message, "write it as in H 10 x W 5 x D 3 cm, or leave it empty")]

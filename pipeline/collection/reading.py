@@ -382,6 +382,9 @@ class RowReader:
             self._reject(
                 row, "object_number", message, "export again with quotation marks around texts of several lines"
             )
+        elif self._is_heading(number, row):
+            message = f"{number!r} has no figure in it and nothing but numbers beside it: a heading, or a sum"
+            self._reject(row, "object_number", message, "leave it out, or give the object a number and a place")
         elif number in self._seen:
             message = f"object number {number!r} was given in row {self._seen[number]} already; only that row is kept"
             self._reject(row, "object_number", message, "give each object its own number, and export one row an object")
@@ -389,6 +392,16 @@ class RowReader:
             self._seen[number] = row.number
             self.items.append(self._item(row, values, cells))
             self.places.append((row.number, row.line))
+
+    def _is_heading(self, number: str, row: Row) -> bool:
+        """Say whether a row parts the others, such as FURNITURE, or sums them up, such as TOTAL 168.
+
+        It is told by its empty place: where no column tells places, nothing is taken for one.
+        """
+        if any(map(str.isnumeric, number)) or not any(field == "gallery" for field, *_ in self._columns):
+            return False
+        others = {at for _, _, places in self._columns for at in places} | set(self._texts or ())
+        return not any(any(map(str.isalpha, row.cells[at])) for at in others - set(self._key))
 
     def _fill(self, values: dict[str, Any], cells: Cells, texts: Texts, found: list[str]) -> None:
         before, provenance = dict(values), list(cells.provenance)
@@ -416,7 +429,8 @@ class RowReader:
         if not gallery:
             gallery, on_display = NOWHERE, False
             remedy = "record its current location; until then it counts as not on display"
-            cells.problems.append(Problem("gallery", "the location is empty", remedy))
+            if said is not False:  # what is not on display, as a flag says, may well have no place that is told
+                cells.problems.append(Problem("gallery", "the location is empty", remedy))
         photographs = self._mapping.images
         values["image"] = of_pattern(
             photographs.pattern, values["object_number"], first_of(str(values.get("image") or ""))

@@ -84,7 +84,7 @@ def stock_of(assessments: Sequence[Assessment], floors: Mapping[str, FloorMotion
     """
     shown = [one for one in assessments if one.scene.item.on_display]
     texts = [
-        (item.object_number, item.title, item.gallery, item.case, one.scene.floor)
+        (item.object_number, item.called, item.gallery, item.case, one.scene.floor)
         for one in shown
         for item in (one.scene.item,)
     ]

@@ -3,8 +3,8 @@
 import csv
 import json
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from heapq import merge
 from itertools import takewhile
 from operator import itemgetter
@@ -21,6 +21,7 @@ from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.registry import is_address
 from pipeline.collection.unit_audit import Suspicion
 from pipeline.night.source_state import mapping_of, source_key
+from pipeline.night.unknown_names import unknown_names
 from pipeline.operations.workspace import IMPORTS, Workspace
 from pipeline.records import Item, Problem
 from pipeline.report.text import safe_cell
@@ -29,6 +30,7 @@ from pipeline.settings import Settings
 
 if TYPE_CHECKING:
     from pipeline.collection.guess import Guess
+    from pipeline.collection.mapping import Mapping as CollectionMapping
 
 LOG_COLUMNS = ("row", "line", "object_number", "field", "what", "message", "remedy")
 
@@ -51,6 +53,11 @@ class Imported:
         """Whether a column says what is on display, or a location does."""
         stores = any(not item.on_display and item.gallery != NOWHERE for item in self.reading.items)
         return self.reading.flagged or stores
+
+    @property
+    def unknown(self) -> str:
+        """What is to be said of words that name no class, as `unknown_names` says it."""
+        return unknown_names(self.reading.items)
 
     @property
     def problems(self) -> list[tuple[Item, Problem]]:
@@ -89,6 +96,7 @@ class Proposed:
 
     name  : for a file with the mapping, without its ending
     shown : the source in messages, without secrets
+    unknown : what is to be said of words that name no class, as `unknown_names` says it
     """
 
     name: str
@@ -98,6 +106,20 @@ class Proposed:
     items: int
     examples: tuple[str, ...]
     suspicions: tuple[Suspicion, ...]
+    unknown: str = ""
+
+
+def _exchanged(
+    suspicions: Sequence[Suspicion], mapping: "CollectionMapping", choices: Mapping[str, str]
+) -> dict[str, str]:
+    """Return the columns of two sides that texts say are exchanged, each by the other's field; none that was chosen."""
+    for one in suspicions:
+        first, second = one.field.split(", ") if one.holds == "sides" else ("", "")
+        columns = [mapping.columns.get(field) for field in (first, second)]
+        names = [column.column for column in columns if column is not None and column.column is not None]
+        if len(names) == 2 and not {first, second} & choices.keys():
+            return {first: names[1], second: names[0]}
+    return {}
 
 
 def proposed(
@@ -112,6 +134,15 @@ def proposed(
 
     found = guess(source, table, choices)
     reading = read_items(source, found.mapping)
+    crossed = _exchanged(reading.suspicions, found.mapping, choices or {})
+    if crossed:
+        again = guess(source, table, {**(choices or {}), **crossed})
+        right = read_items(source, again.mapping)
+        if not any(one.holds == "sides" for one in right.suspicions):
+            told = next(one.message for one in reading.suspicions if one.holds == "sides")
+            kept = " ".join(f"--choose {field}={found.mapping.columns[field].column}" for field in crossed)
+            said = f"{told}: the two columns are taken the other way round; {kept} takes them as they are called"
+            found, reading = replace(again, doubts=(said, *again.doubts)), right
     step = max(len(reading.items) // most, 1)
     examples = tuple(_in_words(item) for item in reading.items[::step][:most])
     if is_address(source):
@@ -121,8 +152,9 @@ def proposed(
             or "mapping"
         )
     else:
-        shown, named = Path(source).name, Path(source).stem
-    return Proposed(named, shown, found, reading.rows, len(reading.items), examples, reading.suspicions)
+        shown, named = source, Path(source).stem
+    unknown = unknown_names(reading.items)
+    return Proposed(named, shown, found, reading.rows, len(reading.items), examples, reading.suspicions, unknown)
 
 
 def _in_words(item: Item) -> str:

@@ -193,5 +193,5 @@ class Publication:
             mine = named.intersection(one.planned.numbers())
             if mine:
                 items = self._scheduler.index.items(sorted(mine))
-                out |= {number: link_to(one.page, number, item.title) for number, item in items.items()}
+                out |= {number: link_to(one.page, number, item.called) for number, item in items.items()}
         return out

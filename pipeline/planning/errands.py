@@ -93,7 +93,7 @@ def advised(assessment: Assessment, sentence: str, page: str = "") -> Advised | 
     item, loss = assessment.scene.item, expected_loss(assessment)
     return Advised(
         item.object_number,
-        item.title,
+        item.called,
         item.gallery,
         item.case.strip(),
         advice.measure,

@@ -226,6 +226,11 @@ class Item:
     provenance: tuple[Provenance, ...] = ()
     problems: tuple[Problem, ...] = ()
 
+    @property
+    def called(self) -> str:
+        """What people know it by: its title, or else what it is."""
+        return self.title or self.object_name
+
 
 LIKELY = 0.1
 """Probability above which a class that an object is not taken for is named beside its own."""

@@ -68,7 +68,7 @@ def draw_all(
     links: dict[str, Pointer] = {}
     tallies = []
     for page, found in pages:
-        titles = {a.scene.item.object_number: a.scene.item.title for a in found.assessments}
+        titles = {a.scene.item.object_number: a.scene.item.called for a in found.assessments}
         mine = [standing for number in titles for standing in decisions.pop(number, ())]
         shown = {} if photos is None else photos(list(titles))
         rendered = writer.renderer.draw(page, found, mine, shown)

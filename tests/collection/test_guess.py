@@ -250,16 +250,38 @@ def test_where_columns_are_named() -> None:
         ("Denomination_2", None),
         ("Matériaux 01", "medium"),
         ("H1", None),
+        ("Matières", "medium"),
+        ("object_names", "object_name"),
+        ("HEIGHTIN", "height_m"),
+        ("weightKg", "mass_kg"),
+        ("begin", None),
+        ("Αρ. Ευρετηρίου", "object_number"),
+        ("ΔΙΑΣΤΑΣΕΙΣ", "dimensions"),
+        ("Bulunduğu Yer", "gallery"),
+        ("Inventarienummer", "object_number"),
+        ("Højde", "height_m"),
+        ("TEMPLOC", "gallery"),
     ],
 )
-def test_names_of_columns_in_eight_languages(name: str, field: str | None) -> None:
+def test_names_of_columns_in_many_languages(name: str, field: str | None) -> None:
     found = named(name)
     assert (None if found is None else found.field) == field
 
 
 def test_a_store_is_no_visible_storage() -> None:
-    places = ["Depot A, rek 3", "Schaudepot", "Réserve 2", "Open storage 4", "Salle 3", "収蔵庫2", "Depotstraße-Saal"]
-    assert list(filter(says_away, places)) == ["Depot A, rek 3", "Réserve 2", "収蔵庫2"]
+    places = [
+        "Αποθήκη Β",
+        "Αίθουσα 1, Προθήκη 2",
+        "Depo 2",
+        "Depot A, rek 3",
+        "Schaudepot",
+        "Réserve 2",
+        "Open storage 4",
+        "Salle 3",
+        "収蔵庫2",
+        "Depotstraße-Saal",
+    ]
+    assert list(filter(says_away, places)) == ["Αποθήκη Β", "Depo 2", "Depot A, rek 3", "Réserve 2", "収蔵庫2"]
 
 
 def test_joins_are_proposed_for_a_database_with_declared_keys(url: str) -> None:

@@ -14,7 +14,7 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.collection.cells import Cells
-from pipeline.collection.dimensions.structured import plain_text
+from pipeline.collection.dimensions.structured import plain_text, words_of
 from pipeline.collection.guess import guess
 from pipeline.collection.mapping import Texts
 from pipeline.collection.measured import fill
@@ -100,6 +100,23 @@ def test_dimensions_as_catalogues_on_the_web_hold_them() -> None:
     deep = '{"a":' * 50 + "1" + "}" * 50
     assert plain_text(deep) == deep
     assert plain_text('{"height": ' + "9" * 5000 + "}")
+
+
+@pytest.mark.parametrize(
+    ("cell", "words"),
+    [
+        ('[{"name": "maleri"}]', "maleri"),
+        ('["Olie på lærred", "Guld", "Guld"]', "Olie på lærred; Guld"),
+        ("[{'type': 'museumstitel', 'title': 'Natten'}, {'title': 'Dagen'}]", "Natten; Dagen"),
+        ("[Untitled]", "[Untitled]"),
+        ("[1923]", "[1923]"),
+        ('["a", 3]', '["a", 3]'),
+        ('[{"id": 3}]', '[{"id": 3}]'),
+        ("[" * 9000, "[" * 9000),
+    ],
+)
+def test_words_as_catalogues_on_the_web_hold_them(cell: str, words: str) -> None:
+    assert words_of(cell) == words
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,8 @@ from pipeline.collection.dimensions.parts import DETAILS, FRAMED, is_base, is_de
 from pipeline.collection.dimensions.result import Choice, Chosen, DimensionPart, Dimensions
 
 _FACES = {"mount": 4, "mat": 4, "sheet": 5, "page": 5, "image": 6, "composition": 6, "plate": 6, "block": 6}
+HANGS = "framed, as it hangs"
+"""How the reason ends of what is said of a frame that counts."""
 _LAST = 9
 _LABELLED = frozenset({"height", "width", "depth", "diameter", "length", "thickness", "weight"})
 _FLAT = 0.5
@@ -126,7 +128,7 @@ def _size(group: list[DimensionPart]) -> float:
 def _reason(group: list[DimensionPart], alike: int, framed: bool) -> str:
     part = group[0]
     if framed:
-        return "framed, as it hangs"
+        return HANGS
     what = f"of {part.words!r}" if part.words else "of the object itself"
     if alike > 1:
         what += f", the largest of {alike} alike"

@@ -122,6 +122,8 @@ def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
             out.qualifiers.add(meaning)
         elif kind in ("with", "without", "part"):
             kept.append((meaning or kind, token))
+        elif token.word == "outer" and at + 1 in indices and tokens[at + 1].meaning == ("part", "frame"):
+            pass
         elif kind == "filler":
             if token.word == "and" and kept:
                 kept.append(("and", token))

@@ -14,6 +14,10 @@ DEEPEST = 6
 """Levels of lists and objects in one another that are looked into."""
 
 _OPENS = re.compile(r"\s*[\[{]\s*[\[{\"']")
+_LISTED = re.compile(r"\s*\[\s*[{\"'].*[}\"']\s*\]\s*\Z", re.DOTALL)
+_WORDS = ("name", "title", "label", "term", "text", "content", "value", "_label", "description", "en")
+"""Keys of what a thing is called, the likeliest first."""
+_MOST_WORDS = 2000
 _NAMES = ("dimension", "dimensiontype", "type", "measurementtype", "name", "label")
 _VALUES = ("value", "amount", "dimensionvalue", "measurementvalue", "measurement", "content", "display")
 _UNITS = ("unit", "units", "dimensionunit", "measurementunit", "unitname")
@@ -46,6 +50,35 @@ def plain_text(text: str) -> str:
     for part, said in () if found is None else _lines(found, "", 0):
         parts.setdefault(part, []).append(said)
     return "; ".join(f"{part}: {', '.join(said)}" if part else ", ".join(said) for part, said in parts.items()) or text
+
+
+def words_of(text: str) -> str:
+    """Return the words that a cell holds as JSON: `["Oil on canvas"]`, `[{"name": "painting"}, {"name": "icon"}]`.
+
+    Parameters
+    ----------
+    text : str
+        Of a cell that names a thing, its material or its place.
+
+    Returns
+    -------
+    str
+        "painting; icon", each once; the text itself where it is no such cell, or holds other things than words.
+    """
+    if len(text) > LONGEST or not _LISTED.match(text):
+        return text
+    found = _parsed(text.strip())
+    words = [] if found is None else list(_words(found))
+    return text if not words or None in words else "; ".join(dict.fromkeys(filter(None, words)))
+
+
+def _words(of: Any) -> Iterator[str | None]:
+    """Yield each word; None for what is none."""
+    for one in of if isinstance(of, list) else [of]:
+        if isinstance(one, Mapping):
+            cells = {str(key).casefold(): value for key, value in one.items()}
+            one = next((cells[name] for name in _WORDS if isinstance(cells.get(name), str)), None)  # noqa: PLW2901
+        yield one.strip()[:_MOST_WORDS] if isinstance(one, str) else None
 
 
 def _parsed(text: str) -> Any:

@@ -10,8 +10,10 @@ from functools import cached_property
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, named
+from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
+from pipeline.errors import InputError
 
 NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
@@ -48,6 +50,12 @@ class Column:
     def numbers(self) -> list[str]:
         """Those that hold a number alone."""
         return [value for value in self.filled if NUMBER.fullmatch(value)]
+
+    @cached_property
+    def by_hand(self) -> float:
+        """Share of its texts that are one number as people write it with a tape measure at hand: 8 1/2, 12", 0,3."""
+        some = self.filled[:_SOME]
+        return sum(map(_of_hand, some)) / len(some) if some else 0.0
 
     @cached_property
     def distinct(self) -> list[str]:
@@ -91,6 +99,19 @@ class Column:
     def numeric(self) -> bool:
         """Whether most of what it holds are numbers."""
         return bool(self.filled) and len(self.numbers) >= 0.5 * len(self.filled)
+
+    @property
+    def measured(self) -> bool:
+        """Whether most of what it holds are numbers, as a program or a person writes them."""
+        return self.numeric or self.by_hand >= 0.5
+
+
+def _of_hand(text: str) -> bool:
+    try:
+        of_hand(text, "m")
+    except InputError:
+        return False
+    return True
 
 
 def _share(texts: Sequence[str], known: object) -> float:
@@ -156,6 +177,30 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
     return out
 
 
+def usual_place(columns: Sequence[Column], found: dict[str, Column]) -> Column | None:
+    """Return the column of usual places, where that of places now tells only what is elsewhere, which is then taken.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    found : dict of str to Column
+        Field -> its column; that of the gallery becomes the one of places now.
+
+    Returns
+    -------
+    Column or None
+        None where one column tells of all objects where they are, or no other one does.
+    """
+    able = [(what, one) for one in columns if one.filled and (what := named(one.name)) and what.field == "gallery"]
+    usual = next((one for what, one in able if what.internal), None)
+    now = min(((what.rank, at) for at, (what, _) in enumerate(able) if not what.internal), default=None)
+    if usual is None or now is None or len(able[now[1]][1].filled) >= len(usual.filled):
+        return None
+    found["gallery"] = able[now[1]][1]
+    return usual
+
+
 def internal(column: Column) -> bool:
     """Whether a column's name is that of a number that only a database knows."""
     what = named(column.name)
@@ -164,7 +209,7 @@ def internal(column: Column) -> bool:
 
 def _letters(columns: Sequence[Column], said: Mapping[int, ColumnMeaning | None]) -> list[tuple[Column, ColumnMeaning]]:
     """Return what single letters mean beside each other: L is a width beside H and P, a length beside H and B."""
-    short = {bare(c.name).strip(" .:"): c for c in columns if said[id(c)] is None and c.numeric}
+    short = {bare(c.name).strip(" .:"): c for c in columns if said[id(c)] is None and c.measured}
     short = {
         letter: column for letter, column in short.items() if (len(letter) == 1 and letter.isalpha()) or letter == "Ø"
     }

@@ -12,7 +12,7 @@ import tomlkit
 from pipeline.collection.display_words import flag_of, says_flags
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column
-from pipeline.collection.guessing.names import unit_in
+from pipeline.collection.guessing.names import bare, unit_in
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
@@ -26,6 +26,15 @@ half."""
 
 MOST_WORDS = 30
 """Different texts that a column of flags has at most."""
+
+_NOT_KNOWN = ("n/a", "na", "none", "unknown", "not known", "unk", "tbd", "nicht bekannt", "inconnu", "sconosciuto")
+"""What people write for a size that nobody knows."""
+
+_ADDED = {("ft", "in"): 12.0, ("lb", "oz"): 16.0}
+"""A greater and a lesser unit -> of the lesser in one of the greater."""
+
+_NAMING = 0.5
+"""Share of a column's texts that name a unit from which each is read with its own."""
 
 _TENTHS = re.compile(r"\d*[.,][1-46-9]")
 _SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
@@ -144,12 +153,15 @@ class Fields:
         What a person has chosen.
     doubts, questions : list
         What is to be looked at, and what may be decided; grows.
+    usual : Column or None
+        Of the usual places of objects, which counts where that of the places now is empty.
     """
 
     columns: Sequence[Column]
     choices: Mapping[str, str]
     doubts: list[str]
     questions: list[Question]
+    usual: Column | None = None
 
     def mapped(self, found: Mapping[str, Column]) -> tuple[tomlkit.items.Table, list[Column]]:
         """Return the section, and the columns that it reads.
@@ -168,7 +180,9 @@ class Fields:
         untold = {
             name: column
             for name, column in found.items()
-            if "m" in units_of(name) and column.numeric and not any(self._told_unit(name, column))
+            if "m" in units_of(name)
+            and (column.numeric or (column.measured and column.dimensional <= _NAMING))
+            and not any(self._told_unit(name, column))
         }
         unit = self._common_unit(untold) if untold else ""
         for name in MAPPABLE:
@@ -182,10 +196,19 @@ class Fields:
                     )
                 continue
             entry = self._measured(name, column, unit) if units_of(name) else self._entry(name, column)
+            if name == "gallery" and self.usual is not None:
+                entry = self._or_usual(column, self.usual)
+                used.append(self.usual)
             if entry is not None:
                 out[name] = entry
                 used.append(column)
         return out, used
+
+    def _or_usual(self, column: Column, usual: Column) -> tomlkit.items.Table:
+        entry = tomlkit.table()
+        entry["columns"], entry["first"] = [column.name, usual.name], True
+        self.doubts.append(f"an object's place is {column.name!r}, and where that is empty {usual.name!r}")
+        return entry
 
     def _entry(self, name: str, column: Column) -> tomlkit.items.Table | None:
         entry = tomlkit.table()
@@ -248,8 +271,15 @@ class Fields:
             return None
         units = units_of(name)
         unit, beside = self._told_unit(name, column)
+        parts = self._added(name, column)
+        if parts:
+            return self._sum(name, parts)
+        # Of a column of fractions and inch marks that names its unit, or has one chosen for it.
+        fractions = len(column.numbers) < len(column.filled) and column.by_hand >= 0.5 and beside is None
+        if fractions and (unit in units or (unit is None and column.dimensional <= _NAMING and "m" in units)):
+            return self._by_hand(column, unit or common)
         if unit is None and not column.numeric:
-            if column.dimensional <= 0.5:
+            if column.dimensional <= _NAMING:
                 self.doubts.append(
                     f"column {column.name!r} holds neither numbers nor lengths with units: left out; --choose "
                     f"{name}.unit=cm takes it nevertheless"
@@ -272,6 +302,37 @@ class Fields:
         if zeros:
             # The unit that is joined makes a text of it.
             entry["missing"] = [0.0] if unit != WRITTEN else zeros
+        return entry
+
+    def _by_hand(self, column: Column, unit: str) -> tomlkit.items.Table:
+        entry = tomlkit.table()
+        entry["column"], entry["unit"], entry["by_hand"] = column.name, unit, True
+        blanks = [text for text in column.distinct if not any(map(str.isalnum, text))] + [
+            text for text in column.distinct if text.casefold() in _NOT_KNOWN
+        ]
+        if blanks:
+            entry["missing"] = blanks
+        self.doubts.append(f"column {column.name!r} is read as written by hand: fractions, inch marks, {unit} else")
+        return entry
+
+    def _added(self, name: str, column: Column) -> list[tuple[Column, str]]:
+        """Return the columns of a greater and a lesser unit that add up: feet beside inches, pounds beside ounces."""
+        base = bare(column.name)
+        there = {unit_in(one.name)[1]: one for one in self.columns if bare(one.name) == base and one.numeric}
+        for (great, less), most in _ADDED.items():
+            pair = there.get(great), there.get(less)
+            if pair[0] is None or pair[1] is None or great not in units_of(name) or column not in pair:
+                continue
+            whole = all(float(text.replace(",", ".")).is_integer() for text in pair[0].numbers)
+            if whole and all(float(text.replace(",", ".")) < most for text in pair[1].numbers):
+                return [(pair[0], great), (pair[1], less)]
+        return []
+
+    def _sum(self, name: str, parts: Sequence[tuple[Column, str]]) -> tomlkit.items.Table:
+        entry = tomlkit.table()
+        entry["columns"], entry["units"] = [one.name for one, _ in parts], [unit for _, unit in parts]
+        words = name.removesuffix("_m").removesuffix("_kg").replace("_", " ")
+        self.doubts.append(f"the {words} is {' and '.join(f'{one.name!r} ({unit})' for one, unit in parts)} together")
         return entry
 
     def _told_unit(self, name: str, column: Column) -> tuple[str | None, Column | None]:

@@ -1,4 +1,4 @@
-"""Names of columns, in eight languages and in Japanese -> fields of the record."""
+"""Names of columns, in ten languages and in Japanese -> fields of the record."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from unicodedata import combining, normalize
 from pydantic import AfterValidator
 
 from pipeline.collection.mapping import MAPPABLE
+from pipeline.collection.record import units_of
 from pipeline.collection.sources.heads import BETWEEN
 from pipeline.errors import InputError
 from pipeline.tables import table
@@ -23,14 +24,18 @@ TEXTS = "dimensions"
 LENGTH = "length_m"
 """The same of a length: it is the width, or else the depth, whichever has no column."""
 
-_INTERNAL = "identifier"
-"""The first of the names of object numbers that are a database's own."""
+_INTERNAL = {"object_number": "identifier", "gallery": "home location"}
+"""The first of the names of object numbers that are a database's own, and of those of usual places."""
 
 _UNITS = r"mm|cm|m|in|inch|inches|ft|kg|g|gr|lb|lbs|oz"
 _ENCLOSED = re.compile(rf"[(\[]\s*(?:in\s+|en\s+)?({_UNITS})\.?\s*[)\]]", re.IGNORECASE)
 _TRAILING = re.compile(rf"(?:[\s_,/]+(?:in|en)\s+|[\s_,/]+)({_UNITS})\.?\s*$", re.IGNORECASE)
+_JOINED = re.compile(r"(\w{4,}?)(mm|cm|in|ft|kg|lb|lbs|oz)", re.IGNORECASE)
+"""A name of one word that ends with a unit: "HEIGHTIN", "weightKg"."""
 _UNIT = {"inch": "in", "inches": "in", "lbs": "lb", "gr": "g"}
-_NUMBER_WORDS = frozenset(["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar"])
+_NUMBER_WORDS = frozenset(
+    ["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar", "αρ", "αριθμοσ", "numarası"]
+)
 _STOP = frozenset(
     {
         *("of", "the", "von", "van", "der", "die", "den", "das", "de", "del", "della", "dello", "di", "du", "des"),
@@ -43,6 +48,8 @@ _GLUED = re.compile(r"(\w{3,}?)(?:number|nummer|num|nr|no)")
 """A name of one word that ends with a word for number: "accessionnum"."""
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _OTHER = re.compile(r"[^\w]+|_")
+_SHORT = 4
+"""Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
 _WEAK = 1000
 """Rank of a name that is only part of what stands in the head."""
 
@@ -100,9 +107,25 @@ def _names() -> dict[str, ColumnMeaning]:
     for row in rows:
         internal = False
         for rank, name in enumerate(row.names):
-            internal = internal or (row.field == "object_number" and name == _INTERNAL)
+            internal = internal or name == _INTERNAL.get(row.field)
             found.setdefault(plain(name), ColumnMeaning(row.field, rank, internal))
     return found
+
+
+@cache
+def _singular_names() -> dict[str, ColumnMeaning]:
+    """Return what names say in the singular, those left out that say two things then: "Matières", "object_names"."""
+    found: dict[str, ColumnMeaning] = {}
+    several = set()
+    for name, what in _names().items():
+        one = _singular(name)
+        if found.setdefault(one, what).field != what.field:
+            several.add(one)
+    return {name: what for name, what in found.items() if name not in several}
+
+
+def _singular(name: str) -> str:
+    return " ".join(word[:-1] if len(word) > _SHORT and word.endswith("s") else word for word in name.split())
 
 
 def plain(name: str) -> str:
@@ -140,6 +163,12 @@ def unit_in(name: str) -> tuple[str, str | None]:
         if found is not None and (name[: found.start()] + name[found.end() :]).strip():
             unit = found[1].casefold()
             return f"{name[: found.start()]} {name[found.end() :]}".strip(), _UNIT.get(unit, unit)
+    joined = _JOINED.fullmatch(name.strip())
+    if joined is not None:
+        said = _names().get(plain(joined[1]))
+        unit = _UNIT.get(joined[2].casefold(), joined[2].casefold())
+        if said is not None and unit in units_of("height_m" if said.field == LENGTH else said.field):
+            return joined[1], unit
     return name, None
 
 
@@ -175,6 +204,10 @@ def named(name: str) -> ColumnMeaning | None:
         return ColumnMeaning(name, 0)
     for form in _forms(name):
         found = _names().get(form)
+        if found is not None:
+            return found
+    for form in _forms(name):
+        found = _singular_names().get(_singular(form))
         if found is not None:
             return found
     return _within(name)

@@ -41,6 +41,9 @@ _PATHS: dict[str, tuple[str, ...]] = {
         "ObjTechnicalTermVrt",
         "ObjTechnicalTermGrp.TechnicalTermVoc",
         "ObjTechnicalTermGrp.TechnicalTermTxt",
+        "ObjObjectNameVrt",
+        "ObjObjectNameTxt",
+        "ObjObjectNameGrp.NameTxt",
         "ObjObjectTypeTxt",
         "ObjObjectTypeVoc",
     ),
@@ -175,12 +178,19 @@ def _said(field: Any) -> str:
     return " ".join(value.split())
 
 
+_KIND_SAID = ("TypeDimRef", "TypeDimRefVoc", "TypeVoc", "TypeDimVoc")
+"""Where a measurement may say of what it is."""
+
+
 def _measured(item: Any, unit: str | None) -> Measurements:
     out = Measurements(unit)
     groups = [g for g in item.findall(f"{_RIA}repeatableGroup") if g.get("name") in ("ObjDimAllGrp", "ObjDimensionGrp")]
     for one in (one for group in groups for one in _in_order(group)):
         said = {field.get("name"): _said(field) for field in one}
-        kind_said = said.get("TypeDimRef") or said.get("TypeVoc") or said.get("TypeDimVoc") or ""
+        preview = said.get("PreviewVrt", "")
+        # A preview that is no text of sizes says of what they are: Objektmass, Rahmenmass.
+        told = "" if any(map(str.isnumeric, preview)) else preview
+        kind_said = next((said[name] for name in _KIND_SAID if said.get(name)), told)
         # What no table has is a kind of measuring ("Höhe x Breite") of the whole, unless it says what else.
         part = part_of(kind_said.partition("(")[0])
         if part is None and not _names_a_part(kind_said):

@@ -73,8 +73,9 @@ def read_sheet(
     the text that the sheet shows, 1913.20 and not 1913.2. In the column of the objects' numbers a date has a fault, for
     a spreadsheet made it of something else. Formulas are never computed, and the value that was once saved beside them
     is never trusted: such cells have a fault, and so have error values, times without a date's meaning (durations), and
-    cells that are hidden behind a merged one. Hidden rows are read like all others. A header cell that holds any of
-    these is an error of the whole sheet.
+    cells that are hidden behind one that is merged across columns. What is merged down a column, such as a room beside
+    all that stands in it, holds for each of its rows. Hidden rows are read like all others. A header cell that holds
+    any of these is an error of the whole sheet.
 
     Parameters
     ----------
@@ -279,6 +280,9 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
     last, width = found.last_row, found.last_column
     filled = _Ranges(found.computed, file, width, but_first=False)
     hidden = _Ranges(found.merged, file, width, but_first=True)
+    body = header_row + header_rows
+    down = {_name(there) for there in found.merged if there[1] == there[3] and there[0] >= body}
+    above: dict[int, tuple[str, tuple[str, str] | None]] = {}
     rows = page.iter_rows(min_row=header_row, max_row=last, max_col=width)
     names = 0
     number = 0
@@ -297,10 +301,13 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
         for place, where in filled.columns(line).items():
             cells[place], faults[place] = "", _formula(f"belongs to the formula of {where}")
         used = max((place + 1 for place in range(width) if place in faults or cells[place].strip()), default=0)
-        for place, where in hidden.columns(line).items():
-            if line >= header_row + header_rows or header_rows == 1:
+        merged = hidden.columns(line)
+        if down:
+            _fill_down({at for at, where in merged.items() if where in down}, above, cells, faults, blank=not used)
+        for place, where in merged.items():
+            if where not in down and (line >= body or header_rows == 1):
                 cells[place], faults[place] = "", _hidden(where)
-        if line < header_row + header_rows:
+        if line < body:
             heads.append(cells)
             names = max(names, _header_width(file, line, cells, faults))
             if len(heads) == header_rows:
@@ -316,6 +323,27 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
                     "give every column that holds anything a name, and see whether cells were shifted",
                 )
             yield Row(number, line, cells[:names], fault, {at: why for at, why in faults.items() if at < names})
+
+
+def _fill_down(
+    merged: Collection[int],
+    above: dict[int, tuple[str, tuple[str, str] | None]],
+    cells: list[str],
+    faults: dict[int, tuple[str, str]],
+    *,
+    blank: bool,
+) -> None:
+    """Give the cells that are merged with one above them what that one holds, but in a row that is blank but for them.
+
+    above : column (from 0) -> text and fault of the last cell of its own; changed in place, as the row is
+    """
+    for place, cell in enumerate(cells):
+        if place not in merged:
+            above[place] = cell, faults.get(place)
+        elif not blank:
+            cells[place], fault = above[place]
+            if fault is not None:
+                faults[place] = fault
 
 
 def _header_width(file: str, line: int, cells: list[str], faults: dict[int, tuple[str, str]]) -> int:

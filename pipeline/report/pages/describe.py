@@ -354,7 +354,7 @@ class Describer:
         state, fails = state_of(assessment), any(f.verdict is Verdict.FAIL for f in assessment.findings)
         named = [*scene.assumptions, *(text for f in assessment.findings for text in f.assumptions)]
         estimates = sorted(scene.parameters.items(), key=lambda pair: (_ORIGIN_ORDER[pair[1].origin], pair[0]))
-        title = clean(item.title or item.object_name)
+        title = clean(item.called)
         worth = worth_of(scene)
         return ObjectView(
             number=clean(item.object_number),

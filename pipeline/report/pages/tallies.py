@@ -98,7 +98,7 @@ def _urgent(assessment: Assessment) -> Urgent:
     worst = min(assessment.findings, key=finding_order)
     outcome = worst.outcome if found is None else f"{found.harm}, {found.band.value}"
     bad = dict.fromkeys((f.model, f.level) for f in assessment.findings if f.verdict is not Verdict.PASS)
-    number, title, gallery, outcome = map(encodable, (item.object_number, item.title, item.gallery, outcome))
+    number, title, gallery, outcome = map(encodable, (item.object_number, item.called, item.gallery, outcome))
     return Urgent(urgency(assessment), number, title, gallery, outcome, tuple(bad))
 
 

@@ -75,6 +75,21 @@ def test_an_object_with_its_groups() -> None:
     assert not row.faults
 
 
+@pytest.mark.parametrize("kind", [voc("TypeDimRefVoc", "{}"), field("PreviewVrt", "{}", "virtualField")])
+def test_a_frame_measured_beside_the_work_is_not_the_work(kind: str) -> None:
+    """Whether a vocabulary of another name or only the preview says which is which."""
+    work, frame = kind.format("Objektmass"), kind.format("Rahmenmass")
+    sizes = group(
+        "ObjDimAllGrp",
+        work + field("HeightNum", "78.5") + field("WidthNum", "114.9") + voc("UnitDdiVoc", "cm"),
+        frame + field("HeightNum", "93.5") + field("WidthNum", "129.9") + voc("UnitDdiVoc", "cm"),
+    )
+    item = f'<moduleItem id="7">{field("ObjObjectNumberTxt", "LM-7")}{sizes}</moduleItem>'
+    header, row = read_museumplus(io.BytesIO(f"{HEAD}{item}{TAIL}".encode()), "ria.xml")
+    said = dict(zip(header.cells, row.cells, strict=True))
+    assert (said["height"], said["width"], row.faults) == ("78.5 cm", "114.9 cm", {})
+
+
 def test_the_preset_makes_an_item_of_it(tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.mktemp("ria") / "export.xml"
     path.write_text(f"{HEAD}{ITEM}{TAIL}", encoding="utf-8")

@@ -201,13 +201,27 @@ def test_errors_are_named() -> None:
     assert row.faults == {1: ("holds the error #REF!", "mend the cell, or empty it")}
 
 
-def test_merged_cells_keep_the_first_and_name_the_others() -> None:
-    _, first, second, third = read(
-        book([["a", "b"], ["1", "Hall"], ["2"], ["3", "Store"]], lambda page: page.merge_cells("B2:B3"))
+def test_cells_merged_across_columns_keep_the_first_and_name_the_others() -> None:
+    _, first, second = read(
+        book([["a", "b", "c"], ["1", "Hall"], ["2", "Store", "x"]], lambda page: page.merge_cells("B2:C2"))
     )
-    assert (first.cells[1], first.faults) == ("Hall", {})
-    assert second.faults == {1: ("is one of the merged cells B2:B3", "unmerge them, and fill in every row and column")}
-    assert third.faults == {}
+    assert first.cells == ["1", "Hall", ""]
+    assert first.faults == {2: ("is one of the merged cells B2:C2", "unmerge them, and fill in every row and column")}
+    assert second.faults == {}
+
+
+def test_a_cell_merged_down_a_column_holds_for_each_of_its_rows() -> None:
+    """A room beside all that stands in it; a blank row within, and what follows, have nothing of it."""
+    rows = [["a", "b"], ["1", "Hall"], ["2"], [], ["3"], ["4", "Store"], ["5"]]
+    _, *found = read(book(rows, lambda page: page.merge_cells("B2:B5")))
+    assert [row.cells for row in found] == [["1", "Hall"], ["2", "Hall"], ["3", "Hall"], ["4", "Store"], ["5", ""]]
+    assert not any(row.faults for row in found)
+
+
+def test_a_fault_that_is_merged_down_a_column_is_that_of_each_of_its_rows() -> None:
+    _, first, second = read(book([["a", "b"], ["1", "=A2"], ["2"]], lambda page: page.merge_cells("B2:B3")))
+    assert first.faults == second.faults
+    assert first.faults[1][0] == "holds a formula"
 
 
 def test_a_merged_or_computed_header_is_refused() -> None:
