@@ -47,6 +47,8 @@ def by_hand(units: Units) -> Write:
             return f"{_weight(value / (mass * G), up=up)}{_THIN}{unit_of_mass}"
         if unit == "N m":
             weight = f"{_weight(value / (mass * G * arm), up=up)}{_THIN}{unit_of_mass}"
+            if not pounds and 0.0 < value < G:
+                weight = f"{_weight(1e3 * value / G, up=up)}{_THIN}g"
             return _("%(weight)s at an arm of %(arm)s") % {"weight": weight, "arm": far}
         return units.text(value, unit)
 

@@ -322,7 +322,8 @@ class _Sheet:
     def _foot(self, at: int, of: int) -> None:
         y = _MARGIN
         right = _("page %(number)s of %(of)s") % {"number": at, "of": of}
-        date = moment(self._head.finished)
+        # The day alone: a gallery that did not change is of an hour that no other page tells.
+        date = moment(self._head.finished[:10])
         middle = _("results of %(date)s") % {"date": date} if date else ""
         name = self._cut(self._name, SANS, 7.0, 0.45 * self._width)
         self._text(_MARGIN, y, name, SANS, 7.0, _GREY)

@@ -253,7 +253,7 @@ def _share(share: float) -> str:
     """Write a share of the expected loss."""
     if share <= 0.0:
         return "0 %"
-    return f"{share:.0%}".replace("%", " %") if share >= 0.095 else f"{significant(100.0 * share, 2)} %"
+    return f"{100.0 * share:.0f} %" if share >= 0.095 else f"{significant(100.0 * share, 2)} %"
 
 
 def _lede(plan: ErrandPlan) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 from pipeline.records import Band, Brief, NewsKind, ObjectChange, RunChanges, Settled, State
 from pipeline.report.language import _, ngettext, parted, said
 from pipeline.report.pages.chances import band_word
+from pipeline.report.pages.survey_words import missing_words
 from pipeline.report.pages.views import Pointer
 from pipeline.report.text import clean, count, plain, short, words
 
@@ -292,7 +293,7 @@ def _stands(brief: Brief) -> str:
 def _missing(brief: Brief) -> str:
     if not brief.missing:
         return ""
-    what = short(words(clean(brief.missing)), 120)
+    what = short(missing_words(clean(brief.missing)), 120)
     # Some of what is missing is a sentence of its own.
     return f": {what}" if ": " in what.partition("(")[0] else ": " + _("not recorded: %(what)s") % {"what": what}
 

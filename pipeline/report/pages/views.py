@@ -294,7 +294,7 @@ class TaskView:
 
     @property
     def grave(self) -> int:
-        """How many of the objects overturn or break."""
+        """How many of the objects are likely to fall or break."""
         return sum(o.grave for o in self.objects)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from string import Formatter
 
+from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.planning.errands import deciding
 from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Recommendation
@@ -139,9 +140,17 @@ def _measure(advice: Recommendation | None) -> str:
 
 
 def _act(view: ObjectView, advice: Recommendation | None, units: Units) -> WalkRow:
-    what = _("No measure found: ask an engineer") if advice is None else said(clean(advice.title))
-    numbers = "" if advice is None else numbers_to_set(advice, units)
-    asked = _asked(view)
+    chance, asked = view.chance, _asked(view)
+    if chance is not None and chance.slender:
+        # What is advised for sizes that nobody believes is not built.
+        return WalkRow(view.number, _title(view), few(_("Check its height and depth first")), photo=_photo(view))
+    if advice is not None:
+        what, numbers = said(clean(advice.title)), numbers_to_set(advice, units)
+        if NAMED_FIRST in advice.sentence:
+            asked = [_("What it is"), *asked]
+    else:
+        unnamed = chance is not None and chance.unnamed
+        what, numbers = _("Say first what it is") if unnamed else _("No measure found: ask an engineer"), ""
     return WalkRow(view.number, _title(view), few(what), numbers, few(asked[0]) if asked else "", _photo(view))
 
 
@@ -188,10 +197,12 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
         if name in advice.parameters and name not in _FOLLOWS and not beside:
             text = write(name, advice.parameters[name], advice.units.get(name, ""))
             if name == "size" and pieces:
-                told[-1] = f"{pieces} × {text}"
+                # The sign of a diameter: 4 x 2 cm would be a strip as well.
+                told[-1] = f"{pieces} × Ø {text}"
                 continue
-            pieces = text if name == "pieces" else ""
+            pieces = text if name == "pieces" else pieces
             plainly = {"times": _("%(number)s times its weight"), "pieces": _("%(number)s pieces")}
-            plainly |= {"force": _("to hold %(number)s")}
+            plainly |= {"force": _("hold %(number)s together") if pieces else _("to hold %(number)s")}
+            plainly |= {"clearance": _("%(number)s free all round"), "friction": _("friction %(number)s or more")}
             told.append(plainly[name] % {"number": text} if name in plainly else f"{words(clean(name))} {text}")
     return parted(told)
