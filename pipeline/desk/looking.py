@@ -22,10 +22,10 @@ from pipeline.desk.words import STATED, lasting, name_told, stated_told, word_to
 from pipeline.planning.efforts import EffortSpan
 from pipeline.quantities import sorting_key
 from pipeline.records import DecisionKind, Support, in_force
-from pipeline.report.language import _
+from pipeline.report.language import _, said
 from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.decided import Decided
-from pipeline.report.pages.errand_views import spanned
+from pipeline.report.pages.errand_views import spanned, trade_word
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.views import STATES, DecisionView, State
 from pipeline.report.units import Units
@@ -254,7 +254,7 @@ def errands(asked: Asked) -> DeskAnswer:
     shown = chosen[_ERRANDS_SHOWN * (page - 1) : _ERRANDS_SHOWN * page]
     context = {
         "entries": shown, "page": page, "more": len(chosen) > _ERRANDS_SHOWN * page, "count": len(chosen),
-        "gallery": gallery, "whose": whose, "state": state, "lasting": lasting,
+        "gallery": gallery, "whose": whose, "state": state, "lasting": lasting, "trade_word": trade_word, "told": said,
         "galleries": sorted({e.errand.gallery for e in every}, key=sorting_key),
         "people": sorted({e.whose for e in every if e.whose}),
         "plan": run.plan, "done": sum(e.state == "done" for e in chosen),
@@ -304,6 +304,7 @@ def errand_context(
     return {
         "entry": entry, "rows": rows, "installable": installable and not entry.errand.prepares, "problem": problem,
         "typed": dict(typed or {}), "spanned": spanned, "hours": _hours(entry.errand.hours),
+        "trade_word": trade_word, "told": said,
         "saved": asked.query.get("saved", ""),
     }  # fmt: skip
 

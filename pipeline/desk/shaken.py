@@ -189,7 +189,7 @@ def _shared(asked: Asked, facts: EventFacts, query: Mapping[str, str], problem: 
 
 def _object(one: ObjectAnswer, at: int, facts: EventFacts, units: Units) -> ShakenObject:
     reports = facts.found(one.number)
-    chance = "" if one.probability is None or one.reported else f"{100.0 * one.probability:.0f} %"
+    chance = "" if one.probability is None or one.reported else f"{100.0 * one.probability:.0f}\u00a0%"
     return ShakenObject(
         at, one.number, short(one.title), one.case, told_of(one), chance, one.make_safe, one.aftershock,
         tuple(_view(report, units) for report in reports), reports[-1].id if reports else 0,

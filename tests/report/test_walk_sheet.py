@@ -16,9 +16,11 @@ from pipeline.report.by_hand import inches
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.walk_sheet import LACKING, PAPERS, sheet_file, sheet_pdf
 from pipeline.report.language import Language
+from pipeline.report.pages.chances import ChanceView
 from pipeline.report.pages.compose import PageHead
+from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.views import PageView, State
-from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, numbers_to_set
+from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, numbers_to_set, walk_view
 from pipeline.report.render import pages_of
 from pipeline.report.units import Units
 
@@ -198,6 +200,13 @@ def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
     assert numbers_to_set(advice(force=(1234.0, "N")), Units("cm")) == "to hold 126\u202fkg"
 
 
+def test_what_pieces_hold_they_hold_in_all_and_a_dot_is_no_strip() -> None:
+    ties = advice(pieces=(4.0, "-"), force=(100.0, "N"))
+    assert numbers_to_set(ties, Units("cm")) == "4 pieces; hold 11\u202fkg in all"
+    wax = advice(pieces=(4.0, "-"), size=(0.02, "m"), force=(100.0, "N"))
+    assert numbers_to_set(wax, Units("cm")) == "4 × Ø 2\u202fcm; hold 11\u202fkg in all"
+
+
 @pytest.mark.parametrize(
     ("metres", "up", "told"),
     [
@@ -210,3 +219,28 @@ def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
 )
 def test_inches_are_in_eighths(metres: float, up: bool, told: str) -> None:
     assert inches(metres, up=up) == told
+
+
+def test_what_makes_advice_doubtful_goes_before_it() -> None:
+    """Sizes that nobody believes are checked first; who knows what it is says so before an engineer is asked."""
+    record = builder.record()
+    views = {view.number: view for gallery in shown(record).galleries for view in gallery.objects}
+    told = dict[str, WalkRow]()
+    for kind in ("plain", "slender", "unnamed"):
+        chance = ChanceView("Harm is possible.", "", "", slender=kind == "slender", unnamed=kind == "unnamed")
+        pairs = [
+            (
+                replace(found, recommendations=() if kind == "unnamed" else found.recommendations),
+                replace(view, chance=chance),
+            )
+            for found in record.assessments
+            for view in [views.get(found.scene.item.object_number)]
+            if view is not None and view.state is State.ACT and not view.settled and found.recommendations
+        ]
+        assert pairs
+        walk = walk_view("", PageView("g.html"), pairs, (), (), Decided((), Units()), Units())
+        assert len(walk.act) == len(pairs)
+        told[kind] = walk.act[0]
+    assert (told["slender"].what, told["slender"].numbers) == ("Check its sizes first", "")
+    assert told["unnamed"].what == "Say first what it is"
+    assert told["plain"].what not in {told["slender"].what, told["unnamed"].what}

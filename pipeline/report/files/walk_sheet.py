@@ -134,18 +134,25 @@ class _Sheet:
 
     def _of_width(self) -> tuple[_Column, ...]:
         # Where something has a picture, the tick box has it beside.
+        rows = (*self._view.act, *self._view.measure)
         fixed = [
             _Column("", 16.0 + (_PICTURE + _PAD if self._images else 0.0), 0),
             _Column(_("Object"), 78.0, _LINES),
             _Column("", 0.0, 3),
-            _Column(_("What to do"), 98.0, 3),
-            _Column(_("Set to"), 115.0, 4),
-            _Column(_("Measured"), 62.0, 2),
+            _Column(_("What to do"), self._held((row.what for row in rows), 88.0, 112.0), 3),
+            _Column(_("Set to"), self._held((row.numbers for row in rows), 90.0, 138.0), 4),
+            _Column(_("Measured"), 58.0, 2),
             _Column(_("Initials"), 36.0, 0),
             _Column(_("Date"), 38.0, 0),
         ]
         fixed[2] = _Column(_("Title"), self._width - sum(one.width for one in fixed), 2)
         return tuple(fixed)
+
+    def _held(self, texts: Iterable[str], least: float, most: float) -> float:
+        """Return the width of a column in which most texts take one line, as far as there is room."""
+        wide = sorted(width_of(self._fit(plain(text)[:_MOST]), SANS, _SIZE) for text in texts if text)
+        asked = wide[(19 * (len(wide) - 1)) // 20] + 2.0 * _PAD + 0.5 if wide else least
+        return min(max(asked, least), most)
 
     def drawn(self) -> bytes:
         top = self._head_lines()

@@ -52,7 +52,7 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         return None
     numbers = _("%(share)s ± %(error)s of %(samples)s samples") % {
         "share": _percent(found.probability),
-        "error": local(f"{100.0 * found.error:.1f} %"),
+        "error": local(f"{100.0 * found.error:.1f}\u00a0%"),
         "samples": found.samples,
     }
     others = [f"{_STATES[Harm(name)]()} {_percent(p)}" for name, p in found.states.items() if p >= _LEAST]
@@ -138,7 +138,7 @@ def left_over(advice: Recommendation) -> str:
 
 
 def _percent(probability: float) -> str:
-    return f"{100.0 * probability:.0f} %" if probability >= _LEAST else _("below 1 %")
+    return f"{100.0 * probability:.0f}\u00a0%" if probability >= _LEAST else _("below 1 %")
 
 
 def open_for(assessment: Assessment) -> str:

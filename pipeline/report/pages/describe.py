@@ -7,6 +7,7 @@ from functools import lru_cache
 from math import isfinite, isnan
 
 from pipeline.analysis.stakes import worth_of
+from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.records import (
     Anchorage,
     Assessment,
@@ -408,6 +409,7 @@ class Describer:
         before = {f.model: f for f in findings if f.level == r.level}
         return MeasureView(
             measure=clean(r.measure),
+            named=NAMED_FIRST in r.sentence,
             title=said(clean(r.title)),
             level=clean(r.level),
             plain=plain_measure(r, self._units) + left_over(r),

@@ -105,6 +105,7 @@ class MeasureView:
 
     plain    : what to do, for who does it
     sentence : the same with all its numbers
+    named    : whether somebody is to say first what the object is
     """
 
     measure: str
@@ -116,6 +117,7 @@ class MeasureView:
     ended: tuple[CheckView, ...]
     rejected: tuple[str, ...]
     source: str
+    named: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,9 @@ WORDS = 8
 _TITLE = 60
 """Characters of a title: two lines of its column."""
 
+_ROUGHER = frozenset({"surface", "grip_pad"})
+"""Measures by which an object slides less: more friction is better."""
+
 _FOLLOWS = frozenset({"movement", "margin", "acceleration", "rotation", "cg_height"})
 """Numbers in the sentences of measures that follow from a measure: nobody sets them."""
 
@@ -143,7 +146,7 @@ def _act(view: ObjectView, advice: Recommendation | None, units: Units) -> WalkR
     chance, asked = view.chance, _asked(view)
     if chance is not None and chance.slender:
         # What is advised for sizes that nobody believes is not built.
-        return WalkRow(view.number, _title(view), few(_("Check its height and depth first")), photo=_photo(view))
+        return WalkRow(view.number, _title(view), few(_("Check its sizes first")), photo=_photo(view))
     if advice is not None:
         what, numbers = said(clean(advice.title)), numbers_to_set(advice, units)
         if NAMED_FIRST in advice.sentence:
@@ -202,7 +205,8 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
                 continue
             pieces = text if name == "pieces" else pieces
             plainly = {"times": _("%(number)s times its weight"), "pieces": _("%(number)s pieces")}
-            plainly |= {"force": _("hold %(number)s together") if pieces else _("to hold %(number)s")}
-            plainly |= {"clearance": _("%(number)s free all round"), "friction": _("friction %(number)s or more")}
+            plainly |= {"force": _("hold %(number)s in all") if pieces else _("to hold %(number)s")}
+            plainly |= {"clearance": _("%(number)s free all round")}
+            plainly |= {"friction": _("friction %(number)s or more")} if advice.measure in _ROUGHER else {}
             told.append(plainly[name] % {"number": text} if name in plainly else f"{words(clean(name))} {text}")
     return parted(told)
