@@ -68,7 +68,7 @@ def inches(metres: float, *, up: bool) -> str:
     # What is above an eighth by less than a thousandth of an inch is that eighth.
     eighths = metres / LENGTHS["in"] * 8.0
     whole, rest = divmod(ceil(eighths - 0.008) if up else round(eighths), 8)
-    return " ".join(part for part in (str(whole) if whole or not rest else "", _EIGHTHS[rest], "in") if part)
+    return "\u00a0".join(part for part in (str(whole) if whole or not rest else "", _EIGHTHS[rest], "in") if part)
 
 
 def _weight(value: float, *, up: bool) -> str:

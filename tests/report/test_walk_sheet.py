@@ -192,7 +192,7 @@ def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
     alone = replace(one, parameters={"moment": 50.0}, sentence="{moment}")
     assert numbers_to_set(alone, Units("cm")) == "moment 5.1\u202fkg at an arm of 1\u202fm"
     # 0.2 m are 7.874 in, 100 N 22.48 lb, 50 N m 36.88 ft lb and 5 kg 11.02 lb; of the first three less is too little.
-    imperial = "7 ⅞ in free all round; to hold 23\u202flb; mass 11\u202flb"
+    imperial = "7\u00a0⅞\u00a0in free all round; to hold 23\u202flb; mass 11\u202flb"
     assert numbers_to_set(alone, Units("in")) == "moment 37\u202flb at an arm of 1 ft"
     assert numbers_to_set(one, Units("in")) == numbers_to_set(one, Units("ft")) == imperial
     assert numbers_to_set(advice(force=(2.0 * 0.45359237 * G, "N")), Units("in")) == "to hold 2\u202flb"
@@ -210,11 +210,11 @@ def test_what_pieces_hold_they_hold_in_all_and_a_dot_is_no_strip() -> None:
 @pytest.mark.parametrize(
     ("metres", "up", "told"),
     [
-        (0.0254, True, "1 in"),
-        (0.0255, True, "1 ⅛ in"),
-        (0.0255, False, "1 in"),
-        (0.001, True, "⅛ in"),
-        (0.0, False, "0 in"),
+        (0.0254, True, "1\u00a0in"),
+        (0.0255, True, "1\u00a0⅛\u00a0in"),
+        (0.0255, False, "1\u00a0in"),
+        (0.001, True, "⅛\u00a0in"),
+        (0.0, False, "0\u00a0in"),
     ],
 )
 def test_inches_are_in_eighths(metres: float, up: bool, told: str) -> None:

@@ -3,6 +3,7 @@
 A letter that the fonts lack is a box, and the sheet says so.
 """
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
@@ -35,6 +36,8 @@ _ROW = 120
 _REST = 12
 """Lines at most of the numbers of objects that need nothing."""
 _FOOT = 12.0
+_SPACES = re.compile(r"[^\S\u00a0\u202f]+")
+"""Where a line may break: not between a number and its unit."""
 _GREY = 0.42
 
 
@@ -235,7 +238,7 @@ class _Sheet:
             return width_of(piece, font, _SIZE) <= width
 
         lines, line = [], ""
-        for word in self._fit(plain(text)[:letters]).split():
+        for word in _SPACES.split(self._fit(plain(text)[:letters]).strip()):
             joined = f"{line} {word}" if line else word
             if fits(joined):
                 line = joined
