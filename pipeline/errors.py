@@ -10,6 +10,9 @@ from typing import ClassVar
 
 _PACKAGE = Path(__file__).parent
 
+FAULT = "a fault of Kouros, not of yours"
+"""How the words begin that are told of what is no `KourosError`."""
+
 _LONGEST = 300
 """Characters of an unexpected error that are told: some quote whole arrays."""
 

@@ -20,6 +20,7 @@ from pipeline.desk.errors import BodyTooLongError, NotThereError
 from pipeline.desk.guard import (
     FORM_BYTES,
     FORM_COOKIE,
+    NAME_COOKIE,
     REPORT_POLICY,
     SESSION_COOKIE,
     Guard,
@@ -27,6 +28,7 @@ from pipeline.desk.guard import (
     form_seed,
     form_token,
     is_form_token,
+    named_cookie,
     person,
 )
 from pipeline.desk.site import DeskSite
@@ -49,6 +51,9 @@ STATIC = {
     "style.css": "text/css",
 }
 """Files that the pages name, with what they are; nothing else is given out."""
+
+_YEAR = 365 * 86_400
+"""Seconds for which a browser keeps the name of who uses it."""
 
 _REPORT_KINDS = {".html": "text/html", ".pdf": "application/pdf", ".csv": "text/csv", ".xlsx": None}
 """Endings of the report's files that are given out; a workbook and a table are saved, not shown."""
@@ -155,7 +160,7 @@ class _Pages:
                 answer = page(asked)
                 if answer.to:
                     note("desk", who=asked.name, path=request.url.path, object=asked.form.get("number", ""))
-                    return RedirectResponse(answer.to, 303)
+                    return self._remembered(RedirectResponse(answer.to, 303), asked)
                 return self._page(request, asked.who, answer)
         except NotThereError as problem:
             return self._told(request, asked.who, str(problem), 404)
@@ -177,6 +182,12 @@ class _Pages:
         response = HTMLResponse(fill(env, f"desk/{answer.template}", context | dict(answer.context)), answer.status)
         if fresh:
             self._cookie(response, FORM_COOKIE, seed)
+        return response
+
+    def _remembered(self, response: Response, asked: Asked) -> Response:
+        """Have the browser keep the name that was typed, so that it is typed once."""
+        if asked.form.get("who", "").strip() and not asked.who.known:
+            self._cookie(response, NAME_COOKIE, named_cookie(asked.name), _YEAR)
         return response
 
     def _cookie(self, response: Response, name: str, value: str, seconds: int | None = None) -> None:

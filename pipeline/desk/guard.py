@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable, MutableMapping
 from dataclasses import dataclass
 from ipaddress import ip_address, ip_network
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import quote, unquote, urlsplit
 
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse
@@ -16,9 +16,9 @@ from pipeline.collection.database import Database
 from pipeline.desk.accounts import of_token
 from pipeline.desk.errors import BodyTooLongError
 from pipeline.settings.serve import LOCAL, ServeSettings
-from pipeline.tools.decisions import WHO_LIMIT, person_here
+from pipeline.tools.decisions import WHO_LIMIT, person_named
 
-SESSION_COOKIE, FORM_COOKIE = "kouros_session", "kouros_form"
+SESSION_COOKIE, FORM_COOKIE, NAME_COOKIE = "kouros_session", "kouros_form", "kouros_name"
 
 FORM_BYTES = 200_000
 """Of a form without a photograph."""
@@ -182,11 +182,17 @@ def person(request: Request, settings: ServeSettings, engine: Database) -> Perso
         given = request.headers.getlist(settings.header)
         name = _text(given[0]) if len(given) == 1 else ""
         return Person(name, name in settings.editors, True) if name else None
-    return Person(person_here(), True, False)
+    # The account that the desk runs under is nobody of the museum: a name is that which the browser's user typed last.
+    return Person(_text(unquote(request.cookies.get(NAME_COOKIE, ""))) or person_named(), True, False)
+
+
+def named_cookie(name: str) -> str:
+    """Return a name as a cookie carries it."""
+    return quote(name, safe="")
 
 
 def _text(header: str) -> str:
-    """Return a header as text: it comes as bytes read as Latin-1; one that names nobody is empty."""
+    """Return a header or a cookie as text: a header comes as bytes read as Latin-1; one that names nobody is empty."""
     try:
         name = header.encode("latin-1").decode("utf-8").strip()
     except UnicodeError:

@@ -18,16 +18,16 @@ from pipeline.desk.errors import NotThereError
 from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.object_facts import ObjectFacts, cells, vocabulary
 from pipeline.desk.run_facts import SHOWN, ListedObject, RunFacts
-from pipeline.desk.words import name_told, word_told
+from pipeline.desk.words import STATED, lasting, name_told, stated_told, word_told
+from pipeline.planning.efforts import EffortSpan
 from pipeline.quantities import sorting_key
 from pipeline.records import DecisionKind, Support, in_force
-from pipeline.report.language import _
+from pipeline.report.language import _, said
 from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.decided import Decided
-from pipeline.report.pages.errand_views import number, spanned
+from pipeline.report.pages.errand_views import spanned, trade_word
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.views import STATES, DecisionView, State
-from pipeline.report.text import words
 from pipeline.report.units import Units
 from pipeline.tables import table
 
@@ -185,7 +185,10 @@ def survey(asked: Asked) -> DeskAnswer:
     if gallery is None:
         wanted = [name for name in run.order if any(_asks(one) for one in run.in_gallery(name))]
         burns = [_burn(asked, name) for name in wanted]
-        return DeskAnswer("survey.html", {"burns": burns, "total": _summed(burns)})
+        walk = [one for name in wanted for one in run.in_gallery(name) if _asks(one)]
+        missing = sum(one.state == State.UNKNOWN for one in walk)
+        context: dict[str, Any] = {"burns": burns, "total": _summed(burns), "lasting": lasting}
+        return DeskAnswer("survey.html", context | {"missing": missing, "open": len(walk) - missing})
     walk = [one for one in run.in_gallery(gallery) if _asks(one)]
     if not walk:
         raise NotThereError(f"there is nothing to measure in {gallery[:60]!r}")
@@ -194,6 +197,7 @@ def survey(asked: Asked) -> DeskAnswer:
              for field in (_asks(one),)]  # fmt: skip
     following = next((one.number for one, *_rest, is_done, _field in entry if not is_done), "")
     context = {"burn": _burn(asked, gallery), "walk": entry, "following": following, "name": gallery}
+    context["lasting"] = lasting
     return DeskAnswer("survey_gallery.html", context)
 
 
@@ -250,7 +254,7 @@ def errands(asked: Asked) -> DeskAnswer:
     shown = chosen[_ERRANDS_SHOWN * (page - 1) : _ERRANDS_SHOWN * page]
     context = {
         "entries": shown, "page": page, "more": len(chosen) > _ERRANDS_SHOWN * page, "count": len(chosen),
-        "gallery": gallery, "whose": whose, "state": state, "spanned": spanned, "number": number,
+        "gallery": gallery, "whose": whose, "state": state, "lasting": lasting, "trade_word": trade_word, "told": said,
         "galleries": sorted({e.errand.gallery for e in every}, key=sorting_key),
         "people": sorted({e.whose for e in every if e.whose}),
         "plan": run.plan, "done": sum(e.state == "done" for e in chosen),
@@ -299,8 +303,16 @@ def errand_context(
     installable = entry.errand.measure in asked.site.workspace.measures.installable
     return {
         "entry": entry, "rows": rows, "installable": installable and not entry.errand.prepares, "problem": problem,
-        "typed": dict(typed or {}), "spanned": spanned, "number": number, "saved": asked.query.get("saved", ""),
+        "typed": dict(typed or {}), "spanned": spanned, "hours": _hours(entry.errand.hours),
+        "trade_word": trade_word, "told": said,
+        "saved": asked.query.get("saved", ""),
     }  # fmt: skip
+
+
+def _hours(span: EffortSpan) -> str:
+    """Say how long an errand takes, with its range."""
+    low, value, high = (lasting(60.0 * one) for one in (span.low, span.value, span.high))
+    return value if low == high else _("%(value)s (%(low)s to %(high)s)") % {"value": value, "low": low, "high": high}
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -325,7 +337,8 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
         "classes": sorted(run.classes, key=class_title), "class_told": class_title, "word_told": word_told,
         "counts": run.classes,
         "galleries": sorted(run.galleries, key=sorting_key), "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
-        "states": states, "unit": cell_unit(QUANTITIES[states][0], run.units) if states in QUANTITIES else "",
+        "stated": {name: stated_told(name) for name in STATED}, "states": states,
+        "unit": cell_unit(QUANTITIES[states][0], run.units) if states in QUANTITIES else "",
         "supports": tuple(Support), "about": len(about), "typed": given, "problem": problem,
         "version": rules_version(asked.site.config), "saved": asked.query.get("saved", ""),
         "named": bool(given["class"] or given["gallery"]),
@@ -342,7 +355,7 @@ def _rule_words(rule: HouseRule, units: Units) -> tuple[str, str, str]:
             shown += f" ({units.bare(value.low, value.high, unit)})" if value.low != value.high else ""
         else:
             shown = word_told(name, str(value))
-        told.append(f"{words(name)}: {shown}")
+        told.append(f"{stated_told(name)}: {shown}")
     values = {name: getattr(rule, name) for name in CRITERIA if getattr(rule, name)}
     values |= {"object_class": tuple(map(class_title, rule.object_class))} if rule.object_class else {}
     about = [" / ".join(map(str, those[:_NAMED])) + (" …" if len(those) > _NAMED else "") for those in values.values()]

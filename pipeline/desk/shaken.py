@@ -18,6 +18,7 @@ from pipeline.report.pages.event_page import told_of
 from pipeline.report.text import short
 from pipeline.report.units import Units
 from pipeline.store.event_reports import EventReport, add_event_reports
+from pipeline.tools.decisions import person_here
 from pipeline.tools.event import answer_again
 from pipeline.tools.event_reports import report_of
 
@@ -183,13 +184,14 @@ def _shared(asked: Asked, facts: EventFacts, query: Mapping[str, str], problem: 
         "event": facts.event, "title": facts.event.title, "problem": problem,
         "exercise": bool(facts.document["event"].get("scenario")), "down": down, "fallen": f"{down['fallen']:.0f}",
         "open": facts.open, "saved": query.get("saved", ""),
-        "by": query.get("who", "")[:200] or asked.who.name,
+        # After an earthquake no tap is lost for want of a name.
+        "by": query.get("who", "")[:200] or asked.who.name or person_here(),
     }  # fmt: skip
 
 
 def _object(one: ObjectAnswer, at: int, facts: EventFacts, units: Units) -> ShakenObject:
     reports = facts.found(one.number)
-    chance = "" if one.probability is None or one.reported else f"{100.0 * one.probability:.0f} %"
+    chance = "" if one.probability is None or one.reported else f"{100.0 * one.probability:.0f}\u00a0%"
     return ShakenObject(
         at, one.number, short(one.title), one.case, told_of(one), chance, one.make_safe, one.aftershock,
         tuple(_view(report, units) for report in reports), reports[-1].id if reports else 0,

@@ -88,7 +88,7 @@ def shortfall(
     if failing:
         remains = [one.expected for one in left.get(id(failing[0]), {}).values()]
         if remains:
-            return f"harm would remain with a probability of {max(remains):.0%}"
+            return f"harm would remain with a probability of {100.0 * max(remains):.0f} %"
         return why_not(failing[0].scene, results[id(failing[0])])
     short: list[Check] = [check for _, check in candidate.checks if not check.passes]
     return f"{short[0].title.lower()} is not enough" if short else ""

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pipeline.errors import KourosError, fault_words
+from pipeline.errors import FAULT, KourosError, fault_words
 from pipeline.records import RunChanges
 from pipeline.report.pages.news import kind_counts, news_line, sentences, shared_causes
 from pipeline.resources import replacing
@@ -222,7 +222,7 @@ def words_of(problem: BaseException) -> str:
         return f"no space is left on {where}: make room (`kouros prune` removes old reports), then run again"
     if isinstance(problem, OSError) and problem.errno is not None:
         return f"{problem} ({type(problem).__name__}; {hint})"
-    return f"a fault of Kouros, not of yours: {fault_words(problem)}; {hint}"
+    return f"{FAULT}: {fault_words(problem)}; {hint}"
 
 
 def summary_text(summary: Summary, folder: Path) -> str:

@@ -47,6 +47,8 @@ def by_hand(units: Units) -> Write:
             return f"{_weight(value / (mass * G), up=up)}{_THIN}{unit_of_mass}"
         if unit == "N m":
             weight = f"{_weight(value / (mass * G * arm), up=up)}{_THIN}{unit_of_mass}"
+            if not pounds and 0.0 < value < G:
+                weight = f"{_weight(1e3 * value / G, up=up)}{_THIN}g"
             return _("%(weight)s at an arm of %(arm)s") % {"weight": weight, "arm": far}
         return units.text(value, unit)
 
@@ -66,7 +68,7 @@ def inches(metres: float, *, up: bool) -> str:
     # What is above an eighth by less than a thousandth of an inch is that eighth.
     eighths = metres / LENGTHS["in"] * 8.0
     whole, rest = divmod(ceil(eighths - 0.008) if up else round(eighths), 8)
-    return " ".join(part for part in (str(whole) if whole or not rest else "", _EIGHTHS[rest], "in") if part)
+    return "\u00a0".join(part for part in (str(whole) if whole or not rest else "", _EIGHTHS[rest], "in") if part)
 
 
 def _weight(value: float, *, up: bool) -> str:

@@ -88,6 +88,9 @@ def _names() -> Iterator[str]:
     names += [name for measure in MEASURES for name in (measure.name, *measure.gives)]
     names += [STORED, *object_classes(), *Support, *Anchorage]
     yield from (bare(name) for name in names)
+    yield from ("width (or diameter)", "height or suspension length", "height of the centre of gravity")
+    yield "width of its weakest section"
+    yield from (f"no generic model applies: it {row['why']}" for row in table("classes") if row["models"] == "none")
     # Whoever chooses one of them at the desk reads its title.
     yield from object_classes().values()
     yield from (row["title"] for name in ("hangings", "furniture", "mounts") for row in table(name))

@@ -16,6 +16,7 @@ _FIXED: dict[str, tuple[str, float]] = {
     "deg": ("°", 1.0),
     "Pa": ("MPa", 1e-6),
     "-": ("", 1.0),
+    "bool": ("", 1.0),
     "": ("", 1.0),
 }
 _RATIOS = ("-", "")

@@ -133,7 +133,12 @@ def _stated(wish: Wish) -> Decision:
 
 def person_here() -> str:
     """Return who sits at this machine, as far as it says; "" where nobody knows."""
-    return os.environ.get(WHO_VARIABLE) or _account()
+    return person_named() or _account()
+
+
+def person_named() -> str:
+    """Return who is named for this machine; "" where nobody is."""
+    return os.environ.get(WHO_VARIABLE, "")
 
 
 def _account() -> str:

@@ -293,6 +293,8 @@ def test_where_only_another_class_makes_harm_possible_no_measure_is_sought_but_w
     view = chance_view(Assessment(one.scene, tuple(findings[0]), (), likelihoods=(mixed,)))
     assert view is not None
     assert view.unnamed
+    # It need not happen, and is not told as if it did.
+    assert view.sentence.startswith("Harm is possible; if it comes to that, it most likely ")
     assert view.check.startswith("Say first what it is: ")
     assert view.classes.startswith("vessel (0.60): harm below 1 %, lamp (0.40): harm ")
 

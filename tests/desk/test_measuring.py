@@ -15,7 +15,7 @@ from pipeline.records import Item
 from pipeline.settings import load_settings
 from tests.museum import museum_of, night, short_site
 
-from .test_paths import complaints, engine_of, press, see
+from .test_paths import complaints, engine_of, press, see, sign
 from .visiting import Visitor, address_of, desk, served
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ def open_cells(browser: Chrome, address: str, number: str) -> None:
     browser.get(address + address_of(number) + "&open=measure")
     if not see(browser, "#m-clearance_m").is_displayed():
         see(browser, "section[aria-labelledby=measure] details.wide > summary").click()
+    sign(browser, "section[aria-labelledby=measure]", "A. Smith")
 
 
 def test_cells_are_taken_or_come_back_with_what_was_typed(running: str, browser: Chrome, museum: Path) -> None:

@@ -50,6 +50,13 @@ def press(browser: Chrome, element: WebElement) -> None:
     WebDriverWait(browser, 10).until(lambda b: b.find_element(By.TAG_NAME, "html") != old)
 
 
+def sign(browser: Chrome, form: str, name: str) -> None:
+    """Type a name, as whom the desk does not know who asks."""
+    cell = see(browser, f"{form} input[name=who]")
+    cell.clear()
+    cell.send_keys(name)
+
+
 def complaints(browser: Chrome) -> list[str]:
     return [entry["message"] for entry in browser.get_log("browser") if "favicon" not in entry["message"]]
 
@@ -60,6 +67,7 @@ def engine_of(museum: Path):  # type: ignore[no-untyped-def]
 
 def test_a_curator_finds_an_object_sees_why_and_accepts_the_risk(running: str, browser: Chrome, museum: Path) -> None:
     browser.get(running)
+    browser.delete_all_cookies()
     see(browser, "input[type=search]").send_keys("vase 3 room 2")
     # As one types, without a button: the list is the answer's, and the address keeps what was asked for.
     WebDriverWait(browser, 10).until(lambda b: len(b.find_elements(By.CSS_SELECTOR, ".hits li")) == 1)
@@ -70,12 +78,17 @@ def test_a_curator_finds_an_object_sees_why_and_accepts_the_risk(running: str, b
     see(browser, "#why summary").click()
     assert "How likely:" in see(browser, "article.card").text
     see(browser, "#accept summary").click()
+    assert see(browser, "#accept input[name=who]").get_attribute("value") == ""
+    sign(browser, "#accept", "A. Smith")
     see(browser, "#accept textarea").send_keys("The case is rebuilt in May")
     press(browser, see(browser, "#accept button"))
     assert "The next night" in see(browser, "[role=status]").text
     assert "The case is rebuilt in May" in see(browser, "section[aria-labelledby=said]").text
     (made,) = read_decisions(engine_of(museum))
-    assert (made.object_number, made.kind) == ("2.3", DecisionKind.ACCEPT)
+    assert (made.object_number, made.kind, made.who) == ("2.3", DecisionKind.ACCEPT, "A. Smith")
+    # What was decided stands beside what is advised; and the name is typed once.
+    assert "Risk accepted" in see(browser, "section.first").text
+    assert see(browser, "#accept input[name=who]").get_attribute("value") == "A. Smith"
     assert complaints(browser) == []
 
 
@@ -87,6 +100,7 @@ def test_a_registrar_says_how_paintings_hang_and_measures_in_fractions(
     Select(see(browser, "select[name=gallery]")).select_by_value("Room 0")
     WebDriverWait(browser, 10).until(lambda b: "for 6 objects" in b.find_element(By.ID, "states").text)
     Select(see(browser, "select[name=word]")).select_by_value("two_hooks")
+    sign(browser, "#rule", "B. Rossi")
     press(browser, see(browser, "#rule > button"))
     assert "house rule is written down" in see(browser, "[role=status]").text
     browser.get(running + address_of("1.2"))
@@ -113,6 +127,7 @@ def test_a_mount_maker_takes_an_errand_and_ticks_it_as_installed(running: str, b
         if not one.text.startswith("Remove")
     )
     browser.get(str(first))
+    sign(browser, "form:has(button[value=take])", "C. Mount")
     press(browser, see(browser, "button[value=take]"))
     assert browser.find_elements(By.CSS_SELECTOR, ".chip.watch")
     browser.execute_script("document.querySelector('.tick').scrollIntoView()")

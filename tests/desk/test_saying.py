@@ -40,6 +40,21 @@ def test_a_decision_is_that_of_the_command(visitor: Visitor, museum: Path) -> No
     assert read_decisions(engine_of(museum))[1].withdraws == one.id
 
 
+def test_a_name_is_typed_once_and_is_never_that_of_the_account(
+    visitor: Visitor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def named() -> set[str]:
+        return set(visitor.object("2.3").page.xpath("//input[@name='who']/@value"))
+
+    assert named() == {""}
+    visitor.follow(visitor.said_of("2.3", "/object/decide", kind="accept", why="w", who='Ἑ. Σμίθ; a=b, "c"'))
+    assert named() == {'Ἑ. Σμίθ; a=b, "c"'}
+    # Only on this browser; elsewhere it is whoever is named for the machine.
+    visitor.cookies.clear()
+    monkeypatch.setenv("KOUROS_WHO", "B. Rossi")
+    assert named() == {"B. Rossi"}
+
+
 def test_a_measure_is_installed_in_the_readers_units(visitor: Visitor, museum: Path) -> None:
     fields = {"kind": "installed", "measure": "clearance", "why": "moved", "p.clearance": "8 1/2"}
     visitor.follow(visitor.said_of("1.1", "/object/decide", **fields))

@@ -157,7 +157,14 @@ def test_what_cannot_be_is_refused_with_the_remedy(shaken: Path) -> None:
             got = tap(visitor, page, "1.1", state, **{"who": "A. Smith", **more})
             assert (got.status, words in got.alert) == (422, True), got.alert
         token = page.hidden("/event/found", "token")
-        told = {"token": token, "event": event_of(shaken), "gallery": ROOM, "state": "fallen", "version": "0"}
+        told = {
+            "token": token,
+            "event": event_of(shaken),
+            "gallery": ROOM,
+            "state": "fallen",
+            "version": "0",
+            "who": "A",
+        }
         assert visitor.post("/event/found", number="nobody", **told).status == 404
         assert in_room(visitor, shaken, "Nowhere").status == 404
         assert visitor.get("/event", event="../../etc").status == 404

@@ -9,6 +9,7 @@ from zoneinfo import ZoneInfo
 
 import pytest
 
+from pipeline.errors import FAULT
 from pipeline.operations.run_summary import plain_changes
 from pipeline.records import ObjectChange, RunChanges
 from pipeline.report import Language
@@ -118,6 +119,17 @@ def test_ages_are_in_words_of_the_page(browser: Chrome, tmp_path: Path) -> None:
     browser.get((tmp_path / "odd.html").as_uri())
     assert "ago" not in browser.find_element("css selector", ".lede").text
     assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
+
+
+@pytest.mark.browser
+def test_a_fault_of_kouros_is_told_in_a_sentence_and_its_error_is_folded(browser: Chrome, tmp_path: Path) -> None:
+    error = f"{FAULT}: KeyError: 'percent' (report/pages/environment.py, line 89, fill)"
+    browser.get(page(tmp_path, {**status("failed"), "message": error}).as_uri())
+    text = browser.find_element("css selector", ".alarm").text
+    assert "It is a fault of Kouros and not of yours." in text
+    assert "KeyError" not in text
+    browser.find_element("css selector", ".alarm summary").click()
+    assert error in browser.find_element("css selector", ".alarm").text
 
 
 @pytest.mark.browser

@@ -166,5 +166,5 @@ def test_an_empty_run_is_a_report_too(tmp_path: Path) -> None:
 def test_inches_reach_the_pages(tmp_path: Path) -> None:
     folder = render(builder.record(), tmp_path / "r", units=Units("in")).parent
     text = "".join(p.read_text(encoding="utf-8") for p in folder.glob("*.html"))
-    assert "Keep 5 ⅝ in clear" in text  # 0.14 m are 5.51 in, the next eighth above
+    assert "Keep 5\u00a0⅝\u00a0in clear" in text  # 0.14 m are 5.51 in, the next eighth above
     assert "\u202fcm" not in text

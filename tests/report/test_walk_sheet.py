@@ -16,9 +16,11 @@ from pipeline.report.by_hand import inches
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.walk_sheet import LACKING, PAPERS, sheet_file, sheet_pdf
 from pipeline.report.language import Language
+from pipeline.report.pages.chances import ChanceView
 from pipeline.report.pages.compose import PageHead
+from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.views import PageView, State
-from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, numbers_to_set
+from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, numbers_to_set, walk_view
 from pipeline.report.render import pages_of
 from pipeline.report.units import Units
 
@@ -97,7 +99,8 @@ def test_pages_are_of_the_size_that_is_set_and_say_gallery_date_and_which_they_a
         (found,) = FOOT.findall(text)
         assert found == (str(at), str(len(pages)))
         assert "Gallery 12" in text
-        assert "results of 2031-05-01 02:13" in text
+        assert "results of 2031-05-01" in text
+        assert "02:13" not in text
     every = "\n".join(words_of(pdf, tmp_path))
     assert all(every.count(row.number) == 1 for row in rows)
     # A heading of a part is never the last of a page.
@@ -181,7 +184,7 @@ def test_what_to_do_has_few_words() -> None:
 def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
     one = advice(clearance=(0.2, "m"), movement=(0.1, "m"), force=(100.0, "N"), moment=(50.0, "N m"), mass=(5.0, "kg"))
     metric = numbers_to_set(one, Units("cm"))
-    assert "clearance 20\u202fcm" in metric
+    assert "20\u202fcm free all round" in metric
     assert "movement" not in metric
     # 100 N are the weight of 10.197 kg, 50 N m that of 5.099 kg at 1 m; of both less is too little.
     assert "to hold 11\u202fkg" in metric
@@ -189,7 +192,7 @@ def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
     alone = replace(one, parameters={"moment": 50.0}, sentence="{moment}")
     assert numbers_to_set(alone, Units("cm")) == "moment 5.1\u202fkg at an arm of 1\u202fm"
     # 0.2 m are 7.874 in, 100 N 22.48 lb, 50 N m 36.88 ft lb and 5 kg 11.02 lb; of the first three less is too little.
-    imperial = "clearance 7 ⅞ in; to hold 23\u202flb; mass 11\u202flb"
+    imperial = "7\u00a0⅞\u00a0in free all round; to hold 23\u202flb; mass 11\u202flb"
     assert numbers_to_set(alone, Units("in")) == "moment 37\u202flb at an arm of 1 ft"
     assert numbers_to_set(one, Units("in")) == numbers_to_set(one, Units("ft")) == imperial
     assert numbers_to_set(advice(force=(2.0 * 0.45359237 * G, "N")), Units("in")) == "to hold 2\u202flb"
@@ -197,15 +200,47 @@ def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
     assert numbers_to_set(advice(force=(1234.0, "N")), Units("cm")) == "to hold 126\u202fkg"
 
 
+def test_what_pieces_hold_they_hold_in_all_and_a_dot_is_no_strip() -> None:
+    ties = advice(pieces=(4.0, "-"), force=(100.0, "N"))
+    assert numbers_to_set(ties, Units("cm")) == "4 pieces; hold 11\u202fkg in all"
+    wax = advice(pieces=(4.0, "-"), size=(0.02, "m"), force=(100.0, "N"))
+    assert numbers_to_set(wax, Units("cm")) == "4 × Ø 2\u202fcm; hold 11\u202fkg in all"
+
+
 @pytest.mark.parametrize(
     ("metres", "up", "told"),
     [
-        (0.0254, True, "1 in"),
-        (0.0255, True, "1 ⅛ in"),
-        (0.0255, False, "1 in"),
-        (0.001, True, "⅛ in"),
-        (0.0, False, "0 in"),
+        (0.0254, True, "1\u00a0in"),
+        (0.0255, True, "1\u00a0⅛\u00a0in"),
+        (0.0255, False, "1\u00a0in"),
+        (0.001, True, "⅛\u00a0in"),
+        (0.0, False, "0\u00a0in"),
     ],
 )
 def test_inches_are_in_eighths(metres: float, up: bool, told: str) -> None:
     assert inches(metres, up=up) == told
+
+
+def test_what_makes_advice_doubtful_goes_before_it() -> None:
+    """Sizes that nobody believes are checked first; who knows what it is says so before an engineer is asked."""
+    record = builder.record()
+    views = {view.number: view for gallery in shown(record).galleries for view in gallery.objects}
+    told = dict[str, WalkRow]()
+    for kind in ("plain", "slender", "unnamed"):
+        chance = ChanceView("Harm is possible.", "", "", slender=kind == "slender", unnamed=kind == "unnamed")
+        pairs = [
+            (
+                replace(found, recommendations=() if kind == "unnamed" else found.recommendations),
+                replace(view, chance=chance),
+            )
+            for found in record.assessments
+            for view in [views.get(found.scene.item.object_number)]
+            if view is not None and view.state is State.ACT and not view.settled and found.recommendations
+        ]
+        assert pairs
+        walk = walk_view("", PageView("g.html"), pairs, (), (), Decided((), Units()), Units())
+        assert len(walk.act) == len(pairs)
+        told[kind] = walk.act[0]
+    assert (told["slender"].what, told["slender"].numbers) == ("Check its sizes first", "")
+    assert told["unnamed"].what == "Say first what it is"
+    assert told["plain"].what not in {told["slender"].what, told["unnamed"].what}

@@ -91,7 +91,9 @@ class Clearance(Measure):
             return refused(rooms)
         remains = runner.once(self.row.name, dict[int, float]).get(one.index)
         if remains is not None:
-            return refused(f"with {100 * rooms[-1]:.0f} cm harm would remain with a probability of {remains:.0%}")
+            return refused(
+                f"with {100 * rooms[-1]:.0f} cm harm would remain with a probability of {100.0 * remains:.0f} %"
+            )
         candidates = []
         for room in rooms:
             numbers = {"clearance": (room, "m"), "movement": (room / MARGIN, "m")}

@@ -152,6 +152,6 @@ def _reason(request: MeasurementRequest, length: str) -> str:
         span = f"{request.low / per:.3g} to {request.high / per:.3g} {unit}".strip()
         span = f", taken as {span} now"
     if request.drawn:
-        chance = f"{min(request.settles, 1.0):.0%}"
+        chance = f"{100.0 * min(request.settles, 1.0):.0f} %"
         return f"{column_name(request.field, length)}: changes what is decided with a chance of {chance}{span}"
     return f"{column_name(request.field, length)}: settles {request.settles:.2g} of {request.open} open verdicts{span}"

@@ -3,6 +3,7 @@
 A letter that the fonts lack is a box, and the sheet says so.
 """
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
@@ -35,6 +36,8 @@ _ROW = 120
 _REST = 12
 """Lines at most of the numbers of objects that need nothing."""
 _FOOT = 12.0
+_SPACES = re.compile(r"[^\S\u00a0\u202f]+")
+"""Where a line may break: not between a number and its unit."""
 _GREY = 0.42
 
 
@@ -134,18 +137,25 @@ class _Sheet:
 
     def _of_width(self) -> tuple[_Column, ...]:
         # Where something has a picture, the tick box has it beside.
+        rows = (*self._view.act, *self._view.measure)
         fixed = [
             _Column("", 16.0 + (_PICTURE + _PAD if self._images else 0.0), 0),
             _Column(_("Object"), 78.0, _LINES),
             _Column("", 0.0, 3),
-            _Column(_("What to do"), 98.0, 3),
-            _Column(_("Set to"), 115.0, 4),
-            _Column(_("Measured"), 62.0, 2),
+            _Column(_("What to do"), self._held((row.what for row in rows), 88.0, 112.0), 3),
+            _Column(_("Set to"), self._held((row.numbers for row in rows), 90.0, 138.0), 4),
+            _Column(_("Measured"), 58.0, 2),
             _Column(_("Initials"), 36.0, 0),
             _Column(_("Date"), 38.0, 0),
         ]
         fixed[2] = _Column(_("Title"), self._width - sum(one.width for one in fixed), 2)
         return tuple(fixed)
+
+    def _held(self, texts: Iterable[str], least: float, most: float) -> float:
+        """Return the width of a column in which most texts take one line, as far as there is room."""
+        wide = sorted(width_of(self._fit(plain(text)[:_MOST]), SANS, _SIZE) for text in texts if text)
+        asked = wide[(19 * (len(wide) - 1)) // 20] + 2.0 * _PAD + 0.5 if wide else least
+        return min(max(asked, least), most)
 
     def drawn(self) -> bytes:
         top = self._head_lines()
@@ -228,7 +238,7 @@ class _Sheet:
             return width_of(piece, font, _SIZE) <= width
 
         lines, line = [], ""
-        for word in self._fit(plain(text)[:letters]).split():
+        for word in _SPACES.split(self._fit(plain(text)[:letters]).strip()):
             joined = f"{line} {word}" if line else word
             if fits(joined):
                 line = joined
@@ -322,7 +332,8 @@ class _Sheet:
     def _foot(self, at: int, of: int) -> None:
         y = _MARGIN
         right = _("page %(number)s of %(of)s") % {"number": at, "of": of}
-        date = moment(self._head.finished)
+        # The day alone: a gallery that did not change is of an hour that no other page tells.
+        date = moment(self._head.finished[:10])
         middle = _("results of %(date)s") % {"date": date} if date else ""
         name = self._cut(self._name, SANS, 7.0, 0.45 * self._width)
         self._text(_MARGIN, y, name, SANS, 7.0, _GREY)

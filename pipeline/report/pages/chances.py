@@ -14,6 +14,12 @@ from pipeline.report.text import clean, words
 ACTED = (Band.ALMOST_CERTAIN, Band.LIKELY, Band.POSSIBLE)
 """Words for what something is done about."""
 
+_RATHER = (Band.ALMOST_CERTAIN, Band.LIKELY)
+"""Words for what rather happens than not."""
+
+_LOST = (Harm.FALLS, Harm.BREAKS)
+"""What no repair undoes."""
+
 
 @dataclass(frozen=True, slots=True)
 class ChanceView:
@@ -21,7 +27,9 @@ class ChanceView:
 
     level : of shaking, at which that is likeliest;  check : why its record is to be looked at first, "" for no reason;
     ask : what one would measure, or say, to decide otherwise;  classes : what it may be, and how likely harm is then;
-    unnamed : whether naming it decides first, for the class that it is taken for would not be acted on
+    unnamed : whether naming it decides first, for the class that it is taken for would not be acted on;
+    share : the probability of harm as people read it;  percent : the same as a number, 0 to 100;  lost : whether it is
+    likely that it falls or breaks;  slender : whether its record is to be checked, for it hardly stands like that
     """
 
     sentence: str
@@ -31,6 +39,10 @@ class ChanceView:
     ask: str = ""
     classes: str = ""
     unnamed: bool = False
+    share: str = ""
+    percent: float = 0.0
+    lost: bool = False
+    slender: bool = False
 
 
 def chance_view(assessment: Assessment) -> ChanceView | None:
@@ -40,10 +52,10 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         return None
     numbers = _("%(share)s ± %(error)s of %(samples)s samples") % {
         "share": _percent(found.probability),
-        "error": local(f"{100.0 * found.error:.1f} %"),
+        "error": local(f"{100.0 * found.error:.1f}\u00a0%"),
         "samples": found.samples,
     }
-    others = [f"{_STATES[Harm(name)]()} {p:.0%}" for name, p in found.states.items() if p >= _LEAST]
+    others = [f"{_STATES[Harm(name)]()} {_percent(p)}" for name, p in found.states.items() if p >= _LEAST]
     more = f": {', '.join(others)}" if others else ""
     slender = doubtful(assessment.scene)
     check = ""
@@ -55,11 +67,21 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         check %= {"times": local(f"{slender:.1f}")}
     unnamed = _unnamed(found)
     if unnamed:
-        asked = " / ".join(class_title(name) for one in found.classes for name in one.classes)
+        asked = _(" or ").join(f"“{class_title(name)}”" for one in found.classes for name in one.classes)
         check = " ".join(filter(None, (check, _("Say first what it is: %(classes)s?") % {"classes": asked})))
     classes = ", ".join(map(_if_class, found.classes))
     return ChanceView(
-        _sentence(found), f"{numbers}{more}.", clean(found.level), check, _asked(assessment), classes, unnamed
+        _sentence(found),
+        f"{numbers}{more}.",
+        clean(found.level),
+        check,
+        _asked(assessment),
+        classes,
+        unnamed,
+        _percent(found.probability),
+        round(100.0 * found.probability, 1),
+        bool(found.harm) and found.band in _RATHER and Harm(found.harm) in _LOST,
+        bool(slender),
     )
 
 
@@ -116,7 +138,7 @@ def left_over(advice: Recommendation) -> str:
 
 
 def _percent(probability: float) -> str:
-    return f"{100.0 * probability:.0f} %" if probability >= _LEAST else _("below 1 %")
+    return f"{100.0 * probability:.0f}\u00a0%" if probability >= _LEAST else _("below 1 %")
 
 
 def open_for(assessment: Assessment) -> str:
@@ -193,7 +215,10 @@ def _sentence(found: Likelihood) -> str:
     band = _BANDS[found.band]()
     if not found.harm:
         return _("Harm is %(band)s.") % {"band": band}
-    return _("Harm is %(band)s; it most likely %(harm)s.") % {
-        "band": band,
-        "harm": _STATES[Harm(found.harm)](),
-    }
+    # What need not happen is not told as if it did.
+    said_so = (
+        _("Harm is %(band)s; it most likely %(harm)s.")
+        if found.band in _RATHER
+        else _("Harm is %(band)s; if it comes to that, it most likely %(harm)s.")
+    )
+    return said_so % {"band": band, "harm": _STATES[Harm(found.harm)]()}

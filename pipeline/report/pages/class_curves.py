@@ -218,6 +218,6 @@ def _view(one: ClassCurve) -> ClassCurveView:
         count(one.objects),
         median,
         "–" if one.dispersion is None else f"{one.dispersion:.2f}",
-        "–" if one.difference is None else f"{one.difference:.0%}",
+        "–" if one.difference is None else f"{100.0 * one.difference:.0f} %",
         harmed,
     )

@@ -55,8 +55,8 @@ LEADERS = 8
 _LAST: Urgency = (len(State), True, True, inf, inf, inf, "", "")
 """Sorts after every object."""
 
-_HELPLESS = "\0"
-"""Groups the objects for which nothing helps; no measure of a table can have this name."""
+_HELPLESS, _UNNAMED = "\0", "\0\0"
+"""Groups the objects for which nothing helps, and those to be named first; no measure of a table has such a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -327,10 +327,13 @@ def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer,
             group = members.setdefault(recommendation.measure, [])
             if not group or group[-1] is not view:
                 group.append(view)
-                sets.setdefault(recommendation.measure, []).append(numbers_to_set(recommendation, units))
+                doubtful = view.chance is not None and view.chance.slender
+                told = _("Check its sizes first") if doubtful else numbers_to_set(recommendation, units)
+                sets.setdefault(recommendation.measure, []).append(told)
             advice.setdefault(recommendation.measure, []).append(recommendation)
         if view.state is State.ACT and not assessment.recommendations and not view.settled:
-            members.setdefault(_HELPLESS, []).append(view)
+            unnamed = view.chance is not None and view.chance.unnamed
+            members.setdefault(_UNNAMED if unnamed else _HELPLESS, []).append(view)
     return tuple(
         TaskView(
             said(clean(advice[key][0].title)),
@@ -339,6 +342,6 @@ def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer,
             measure=key,
         )
         if key in advice
-        else TaskView("", tuple(objects), advised=False)
+        else TaskView(_("Say first what it is") if key == _UNNAMED else "", tuple(objects), advised=key == _UNNAMED)
         for key, objects in members.items()
     )

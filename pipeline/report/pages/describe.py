@@ -7,6 +7,7 @@ from functools import lru_cache
 from math import isfinite, isnan
 
 from pipeline.analysis.stakes import worth_of
+from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.records import (
     Anchorage,
     Assessment,
@@ -36,7 +37,7 @@ from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
 from pipeline.report.pages.plainly import plain_measure
 from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of, urgency
-from pipeline.report.pages.survey_words import wish_views
+from pipeline.report.pages.survey_words import missing_words, wish_views
 from pipeline.report.pages.views import (
     Bar,
     CheckView,
@@ -355,7 +356,7 @@ class Describer:
         named = [*scene.assumptions, *(text for f in assessment.findings for text in f.assumptions)]
         estimates = sorted(scene.parameters.items(), key=lambda pair: (_ORIGIN_ORDER[pair[1].origin], pair[0]))
         title = clean(item.called)
-        worth = worth_of(scene)
+        worth, chance = worth_of(scene), chance_view(assessment)
         return ObjectView(
             number=clean(item.object_number),
             title=title,
@@ -379,11 +380,11 @@ class Describer:
             numbers=tuple(self._sayings.number(name, estimate) for name, estimate in estimates),
             assumptions=tuple(dict.fromkeys(said(clean(text)) for text in named)),
             statements=tuple(said(clean(text)) for text in scene.statements),
-            missing=tuple(words(clean(m)) for m in scene.missing),
+            missing=tuple(missing_words(clean(m)) for m in scene.missing),
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
             wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
-            grave=any(grave(f) for f in assessment.findings),
-            chance=chance_view(assessment),
+            grave=any(grave(f) for f in assessment.findings) if chance is None else chance.lost,
+            chance=chance,
             open_for=open_for(assessment),
             fragilities=fragility_views(assessment, drawn=state is State.ACT and fails),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
@@ -408,6 +409,7 @@ class Describer:
         before = {f.model: f for f in findings if f.level == r.level}
         return MeasureView(
             measure=clean(r.measure),
+            named=NAMED_FIRST in r.sentence,
             title=said(clean(r.title)),
             level=clean(r.level),
             plain=plain_measure(r, self._units) + left_over(r),

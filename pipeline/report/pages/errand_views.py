@@ -184,6 +184,11 @@ def number(value: float) -> str:
     return count(round(value)) if value >= 99.5 else significant(value, 3 if value >= 10.0 else 2)
 
 
+def trade_word(trade: str) -> str:
+    """Return what whoever does an errand is called."""
+    return _TRADES[trade]()
+
+
 def spanned(span: EffortSpan) -> str:
     """Write an amount with its range."""
     if span.low == span.high:
@@ -252,8 +257,8 @@ def _ratio(avoided: float, plan: ErrandPlan) -> float:
 def _share(share: float) -> str:
     """Write a share of the expected loss."""
     if share <= 0.0:
-        return "0 %"
-    return f"{share:.0%}".replace("%", " %") if share >= 0.095 else f"{significant(100.0 * share, 2)} %"
+        return "0\u00a0%"
+    return f"{100.0 * share:.0f}\u00a0%" if share >= 0.095 else f"{significant(100.0 * share, 2)}\u00a0%"
 
 
 def _lede(plan: ErrandPlan) -> str:

@@ -232,7 +232,7 @@ def _listed(objects: Sequence[ObjectAnswer]) -> tuple[EventObject, ...]:
 
 
 def _percent(value: float) -> str:
-    return f"{100.0 * value:.0f} %" if value >= 0.01 or value == 0.0 else "<1 %"
+    return f"{100.0 * value:.0f}\u00a0%" if value >= 0.01 or value == 0.0 else "<1\u00a0%"
 
 
 def _object(one: ObjectAnswer) -> EventObject:

@@ -163,7 +163,7 @@ def _goodness(f: Fragility) -> str:
         said_so += " " + told % {"error": f"{100.0 * f.error:.0f} %"}
     if f.goodness is not None and f.deviance is not None:
         told = _("Deviance %(deviance)s with %(degrees)s degrees of freedom: by chance as large in %(share)s of cases.")
-        share = f"{f.goodness:.0%}"
+        share = f"{100.0 * f.goodness:.0f}\u00a0%"
         said_so += " " + told % {"deviance": local(f"{f.deviance:.1f}"), "degrees": count(f.degrees), "share": share}
     if f.median_pgv is not None:
         told = (
@@ -207,7 +207,7 @@ def _percent(chance: float) -> str:
         return _("less than 0.1 %")
     if chance > 0.99:
         return _("more than 99 %")
-    return f"{significant(100.0 * chance, 1 if chance < 0.01 else 2)} %"
+    return f"{significant(100.0 * chance, 1 if chance < 0.01 else 2)}\u00a0%"
 
 
 def _rate(f: Fragility) -> str:

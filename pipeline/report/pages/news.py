@@ -1,5 +1,6 @@
 """News of objects in plain words: what a night found changed, one object a line."""
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -7,7 +8,8 @@ from typing import Any
 
 from pipeline.records import Band, Brief, NewsKind, ObjectChange, RunChanges, Settled, State
 from pipeline.report.language import _, ngettext, parted, said
-from pipeline.report.pages.chances import band_word
+from pipeline.report.pages.chances import band_word, class_title
+from pipeline.report.pages.survey_words import missing_words
 from pipeline.report.pages.views import Pointer
 from pipeline.report.text import clean, count, plain, short, words
 
@@ -173,9 +175,15 @@ def told_counts(counts: Mapping[Any, int]) -> tuple[tuple[str, str], ...]:
     return tuple((_head(NewsKind(kind)), count(number)) for kind, number in counts.items())
 
 
+_HOUSE = "house"
+"""Setting that people state at the desk: they do not call it one."""
+
+
 def shared_causes(changes: RunChanges) -> list[str]:
     """Return what changed of what many objects rest on: "motions", "settings", "versions"; else it was the floors."""
     found = [name for name in ("motions", "settings", "versions") if getattr(changes, name)]
+    if "settings" in found and all(one.name.partition(".")[0] == _HOUSE for one in changes.settings):
+        found[found.index("settings")] = _HOUSE
     return found or (["floors"] if changes.shared else [])
 
 
@@ -184,6 +192,7 @@ def because(causes: Sequence[str]) -> str:
     told = {
         "motions": _("the earthquake used"),
         "settings": _("settings"),
+        _HOUSE: _("house rules"),
         "versions": _("another version of Kouros"),
         "floors": _("floors"),
     }
@@ -292,7 +301,7 @@ def _stands(brief: Brief) -> str:
 def _missing(brief: Brief) -> str:
     if not brief.missing:
         return ""
-    what = short(words(clean(brief.missing)), 120)
+    what = short(missing_words(clean(brief.missing)), 120)
     # Some of what is missing is a sentence of its own.
     return f": {what}" if ": " in what.partition("(")[0] else ": " + _("not recorded: %(what)s") % {"what": what}
 
@@ -305,10 +314,22 @@ def _moved(one: ObjectChange) -> str:
 def _decided(one: ObjectChange) -> str:
     told = [
         (_("%(what)s, by %(who)s") if each.new else _("no longer in force: %(what)s, by %(who)s"))
-        % {"what": short(said(clean(each.matter)), 120), "who": short(each.who, 60)}
+        % {"what": short(_matter(clean(each.matter)), 120), "who": short(each.who, 60)}
         for each in one.decided
     ]
     return parted(told)
+
+
+def _matter(matter: str) -> str:
+    """Return what was decided, in the words of who decides at the desk."""
+    found = _MATTER.fullmatch(matter)
+    if found is None:
+        return said(matter)
+    risk, named, end = found["risk"], found["class"], found["end"]
+    return (_("risk accepted") if risk else _("named: %(what)s") % {"what": class_title(named)}) + end
+
+
+_MATTER = re.compile(r"(?:(?P<risk>risk accepted)|class (?P<class>\w+))(?P<end>.*)")
 
 
 def _why(one: ObjectChange) -> str:

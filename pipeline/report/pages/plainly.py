@@ -39,7 +39,7 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
         # Results of another version may lack a number: its title is true in any case.
         told.append(f"{said(clean(advice.title))}.")
     if NAMED_FIRST in advice.sentence:
-        told.append(_("Say first what it is: for another kind of object this may not be enough."))
+        told.append(_("Before that, say what it is: for another kind of object this may not be enough."))
     if AT_BEST in advice.sentence:
         named = NAMED_FIRST in advice.sentence
         told.append(
@@ -62,18 +62,21 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
     "pins": lambda: _("Set %(pieces)s padded brass pins round its foot."),
     "wax": lambda: _("Fix it with %(pieces)s dots of microcrystalline wax, %(size)s across, under its base."),
     "putty": lambda: _("Fix it with %(pieces)s pads of museum putty, %(size)s across, under its base."),
-    "ties": lambda: _("Tie it down with %(pieces)s nylon lines: they must hold %(force)s."),
-    "clips": lambda: _("Hold its foot by %(pieces)s padded clips: they must hold %(force)s."),
+    "ties": lambda: _("Tie it down with %(pieces)s nylon lines: together they must hold %(force)s sideways."),
+    "clips": lambda: _("Hold its foot by %(pieces)s padded clips: together they must hold %(force)s sideways."),
     "ballast": lambda: _("Put %(mass)s of ballast low into its base."),
     "wide_base": lambda: _(
-        "Fix it to a plate %(width)s wide and deep, with %(clearance)s free around: the fixing must hold %(force)s."
+        "Fix it to a plate %(width)s wide and deep, with %(clearance)s free around: the fixing must hold "
+        "%(force)s sideways."
     ),
-    "brackets": lambda: _("Fix its top to the wall by %(pieces)s steel brackets: they must hold %(force)s."),
-    "clamps": lambda: _("Clamp its base by %(pieces)s padded clamps: they must hold %(force)s."),
-    "fasten": lambda: _("Fasten its base: the mount must hold %(force)s."),
+    "brackets": lambda: _(
+        "Fix its top to the wall by %(pieces)s steel brackets: together they must hold %(force)s sideways."
+    ),
+    "clamps": lambda: _("Clamp its base by %(pieces)s padded clamps: together they must hold %(force)s sideways."),
+    "fasten": lambda: _("Fasten its base: the mount must hold %(force)s sideways."),
     "brace": lambda: _(
-        "Have a mount-maker brace it from behind at a height of %(height)s, where the brace must hold %(force)s, "
-        "and fasten its base."
+        "Have a mount-maker brace it from behind at a height of %(height)s, where the brace must hold %(force)s "
+        "sideways, and fasten its base."
     ),
     "close_hooks": lambda: _("Close its hooks, so that it cannot jump out of them."),
     "hold": lambda: _("Have a mount-maker hold it on its mount, for %(times)s times its weight."),
@@ -81,6 +84,6 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
     "friction_isolator": lambda: _("Stand it on a low-friction pad, with %(clearance)s free on all sides."),
     "horizontal_isolator": lambda: _("Have it put on an isolator that moves by up to %(stroke)s."),
     "rotational_isolator": lambda: _("Have it mounted on an elastic pad."),
-    "strengthen": lambda: _("Have its weakest part strengthened, and its base fastened for %(force)s."),
+    "strengthen": lambda: _("Have its weakest part strengthened, and its base fastened to hold %(force)s sideways."),
     "remove": lambda: _("Take it off display, or have an engineer design its mount."),
 }

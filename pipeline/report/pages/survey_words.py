@@ -1,5 +1,6 @@
 """Survey in words, what is worth measuring: for one object, for a gallery as a list, for the museum in a sentence."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.analysis.survey import ENDS, measurables
@@ -68,6 +69,21 @@ def survey_sentence(tally: Tally, seconds: float) -> str:
     if seconds:
         told.append(_("Finding this out took %(seconds)s s.") % {"seconds": local(f"{seconds:.1f}")})
     return " ".join(told)
+
+
+def missing_words(missing: str) -> str:
+    """Return what is missing in a record as who keeps it says it."""
+    slender = _SLENDER.fullmatch(missing)
+    if slender:
+        told = _(
+            "how it is held (it is %(times)s times as high as it is deep: "
+            "it cannot stand by itself, or a measure is wrong)"
+        )
+        return told % {"times": slender[1]}
+    return said(words(missing))
+
+
+_SLENDER = re.compile(r"support \(it is (\d+) times as high as it is deep: .*\)")
 
 
 def _label(field: str) -> str:

@@ -105,6 +105,7 @@ class MeasureView:
 
     plain    : what to do, for who does it
     sentence : the same with all its numbers
+    named    : whether somebody is to say first what the object is
     """
 
     measure: str
@@ -116,6 +117,7 @@ class MeasureView:
     ended: tuple[CheckView, ...]
     rejected: tuple[str, ...]
     source: str
+    named: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,7 +296,7 @@ class TaskView:
 
     @property
     def grave(self) -> int:
-        """How many of the objects overturn or break."""
+        """How many of the objects are likely to fall or break."""
         return sum(o.grave for o in self.objects)
 
 

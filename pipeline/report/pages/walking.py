@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from string import Formatter
 
+from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.planning.errands import deciding
 from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Recommendation
@@ -20,6 +21,9 @@ WORDS = 8
 
 _TITLE = 60
 """Characters of a title: two lines of its column."""
+
+_ROUGHER = frozenset({"surface", "grip_pad"})
+"""Measures by which an object slides less: more friction is better."""
 
 _FOLLOWS = frozenset({"movement", "margin", "acceleration", "rotation", "cg_height"})
 """Numbers in the sentences of measures that follow from a measure: nobody sets them."""
@@ -139,9 +143,17 @@ def _measure(advice: Recommendation | None) -> str:
 
 
 def _act(view: ObjectView, advice: Recommendation | None, units: Units) -> WalkRow:
-    what = _("No measure found: ask an engineer") if advice is None else said(clean(advice.title))
-    numbers = "" if advice is None else numbers_to_set(advice, units)
-    asked = _asked(view)
+    chance, asked = view.chance, _asked(view)
+    if chance is not None and chance.slender:
+        # What is advised for sizes that nobody believes is not built.
+        return WalkRow(view.number, _title(view), few(_("Check its sizes first")), photo=_photo(view))
+    if advice is not None:
+        what, numbers = said(clean(advice.title)), numbers_to_set(advice, units)
+        if NAMED_FIRST in advice.sentence:
+            asked = [_("What it is"), *asked]
+    else:
+        unnamed = chance is not None and chance.unnamed
+        what, numbers = _("Say first what it is") if unnamed else _("No measure found: ask an engineer"), ""
     return WalkRow(view.number, _title(view), few(what), numbers, few(asked[0]) if asked else "", _photo(view))
 
 
@@ -188,10 +200,13 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
         if name in advice.parameters and name not in _FOLLOWS and not beside:
             text = write(name, advice.parameters[name], advice.units.get(name, ""))
             if name == "size" and pieces:
-                told[-1] = f"{pieces} × {text}"
+                # The sign of a diameter: 4 x 2 cm would be a strip as well.
+                told[-1] = f"{pieces} × Ø {text}"
                 continue
-            pieces = text if name == "pieces" else ""
+            pieces = text if name == "pieces" else pieces
             plainly = {"times": _("%(number)s times its weight"), "pieces": _("%(number)s pieces")}
-            plainly |= {"force": _("to hold %(number)s")}
+            plainly |= {"force": _("hold %(number)s in all") if pieces else _("to hold %(number)s")}
+            plainly |= {"clearance": _("%(number)s free all round")}
+            plainly |= {"friction": _("friction %(number)s or more")} if advice.measure in _ROUGHER else {}
             told.append(plainly[name] % {"number": text} if name in plainly else f"{words(clean(name))} {text}")
     return parted(told)
