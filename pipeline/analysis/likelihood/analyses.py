@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.analysis.furniture import FurnitureFilter
-from pipeline.analysis.likelihood.draws import Draw, Draws, Ranges
+from pipeline.analysis.likelihood.draws import Draw, JointDraws, Ranges
 from pipeline.analysis.likelihood.shaking import direction
 from pipeline.analysis.plan import Indices, own_angle, requirements, unique_rows
 from pipeline.analysis.verdicts import capacity_of, utilisation
@@ -240,7 +240,7 @@ class Analyses:
         model, where = self.model, np.concatenate(chosen)
         if where.size == 0:
             return
-        draws = Draws(each, np.repeat(np.arange(len(each)), [which.size for which in chosen]))
+        draws = JointDraws(each, np.repeat(np.arange(len(each)), [which.size for which in chosen]))
         for at, way in enumerate(self.ways):
             values = self._values(way, self.tied[at], draws, where, wide=bool(at) and self.angle is None)
             excitations = [
@@ -268,7 +268,13 @@ class Analyses:
         return felt.excitation(turned + 90.0 * way)
 
     def _values(
-        self, way: Sequence[Ranges], tied: Mapping[str, tuple[str, Array]], draws: Draws, chosen: Indices, *, wide: bool
+        self,
+        way: Sequence[Ranges],
+        tied: Mapping[str, tuple[str, Array]],
+        draws: JointDraws,
+        chosen: Indices,
+        *,
+        wide: bool,
     ) -> dict[str, Array]:
         values = {one.name: one.at(draws, chosen) for one in way}
         for name, (other, times) in tied.items():

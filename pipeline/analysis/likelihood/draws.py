@@ -103,7 +103,7 @@ class Draw:
 
 
 @dataclass(frozen=True)
-class Draws:
+class JointDraws:
     """Some joint samples, of which several objects are drawn.
 
     Attributes
@@ -122,9 +122,9 @@ class Draws:
         numbers = [draw.number for draw in self.each]
         return np.asarray(_shares(self.each[0].most)[numbers, _places()[name]][self.of])
 
-    def take(self, some: NDArray[np.intp]) -> "Draws":
+    def take(self, some: NDArray[np.intp]) -> "JointDraws":
         """Return the same samples, of some of what is drawn."""
-        return Draws(self.each, self.of[some])
+        return JointDraws(self.each, self.of[some])
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ class Ranges:
     def _lines(self) -> tuple[Array, Array]:
         return _lines(self.low, self.best, self.high)
 
-    def at(self, draws: Draws, chosen: NDArray[np.intp]) -> Array:
+    def at(self, draws: JointDraws, chosen: NDArray[np.intp]) -> Array:
         """Return the values of joint samples, of one of the objects each, (n,)."""
         if self._certain:
             return self.best[chosen]

@@ -6,7 +6,7 @@ import re
 import warnings
 import zipfile
 import zlib
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from datetime import date, datetime, time
 from io import BufferedReader
@@ -53,6 +53,8 @@ _DAMAGE = (
 _ESCAPED = re.compile("_x00(09|0[aA]|0[dD])_")
 _UNUSABLE = re.compile("[\x00\ud800-\udfff]")
 _ZEROS = re.compile("0{2,20}")
+_MEASURED = re.compile(r"[\d.,/\s\u00bc-\u00be]{0,20}\d[\d.,/\s\u00bc-\u00be]{0,20}(?:[a-z\"]{1,3}\.?)?", re.IGNORECASE)
+"""A number, with or without a unit."""
 
 
 def read_sheet(
@@ -73,9 +75,9 @@ def read_sheet(
     the text that the sheet shows, 1913.20 and not 1913.2. In the column of the objects' numbers a date has a fault, for
     a spreadsheet made it of something else. Formulas are never computed, and the value that was once saved beside them
     is never trusted: such cells have a fault, and so have error values, times without a date's meaning (durations), and
-    cells that are hidden behind one that is merged across columns. What is merged down a column, such as a room beside
-    all that stands in it, holds for each of its rows. Hidden rows are read like all others. A header cell that holds
-    any of these is an error of the whole sheet.
+    cells that are hidden behind one that is merged across columns, or that holds a number. Words that are merged down a
+    column, such as a room beside all that stands in it, hold for each of its rows. Hidden rows are read like all
+    others. A header cell that holds any of these is an error of the whole sheet.
 
     Parameters
     ----------
@@ -303,7 +305,8 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
         used = max((place + 1 for place in range(width) if place in faults or cells[place].strip()), default=0)
         merged = hidden.columns(line)
         if down:
-            _fill_down({at for at, where in merged.items() if where in down}, above, cells, faults, blank=not used)
+            held = {at: where for at, where in merged.items() if where in down}
+            _fill_down(held, above, cells, faults, blank=not used)
         for place, where in merged.items():
             if where not in down and (line >= body or header_rows == 1):
                 cells[place], faults[place] = "", _hidden(where)
@@ -326,7 +329,7 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
 
 
 def _fill_down(
-    merged: Collection[int],
+    merged: Mapping[int, str],
     above: dict[int, tuple[str, tuple[str, str] | None]],
     cells: list[str],
     faults: dict[int, tuple[str, str]],
@@ -335,13 +338,18 @@ def _fill_down(
 ) -> None:
     """Give the cells that are merged with one above them what that one holds, but in a row that is blank but for them.
 
+    A number is not given: a room holds all that stands in it, but a height is of one object, and nobody says of which.
+
     above : column (from 0) -> text and fault of the last cell of its own; changed in place, as the row is
     """
     for place, cell in enumerate(cells):
         if place not in merged:
             above[place] = cell, faults.get(place)
         elif not blank:
-            cells[place], fault = above[place]
+            text, fault = above[place]
+            if _MEASURED.fullmatch(text.strip()):
+                text, fault = "", _hidden(merged[place])
+            cells[place] = text
             if fault is not None:
                 faults[place] = fault
 
