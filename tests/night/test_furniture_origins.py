@@ -28,7 +28,7 @@ def test_a_night_counts_where_it_is_known_from_what_objects_stand_on(tmp_path: P
     told = json.loads(summary.report.with_name("summary.json").read_text(encoding="utf-8"))
     assert told["stands_by"] == {"measured": 1, "stated": 1, "assumed": 4}
     words = " ".join(html.parse(str(summary.report)).getroot().find(".//main").text_content().split())
-    line = "Stands on: 1 by their record, 1 by a house rule, 4 by what is usual for their class"
+    line = "What objects stand on: 1 by their record, 1 by a house rule, 4 by what is usual for their class"
     assert line in words
     with summary.report.with_name("objects.csv").open(encoding="utf-8", newline="") as stream:
         objects = {row["object_number"]: (row["furniture"], row["furniture_origin"]) for row in csv.DictReader(stream)}

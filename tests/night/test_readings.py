@@ -73,7 +73,7 @@ def said(settings: Settings, counts: dict[str, int]) -> Path:
         assert {name: reading[name] for name in counts} == counts
     line = f"{counts['rows']:,} rows, {counts['refused']} refused, {counts['doubtful']} doubtful"
     assert f"read: {line}" in "\n".join(summary_lines(summary))
-    assert f"Read: {line}" in words(index)
+    assert f"Read from the museum’s records: {line}" in words(index)
     assert line in words(index.with_name("reading.html"))
     assert ("none is left out" in words(index)) is not counts["refused"]
     (looked,) = [one for one in diagnose(settings.home / "kouros.toml") if one.what == "inventory"]
