@@ -5,6 +5,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from heapq import merge
 from itertools import takewhile
 from operator import itemgetter
@@ -54,7 +55,7 @@ class Imported:
         stores = any(not item.on_display and item.gallery != NOWHERE for item in self.reading.items)
         return self.reading.flagged or stores
 
-    @property
+    @cached_property
     def unknown(self) -> str:
         """What is to be said of words that name no class, as `unknown_names` says it."""
         return unknown_names(self.reading.items)
@@ -114,7 +115,9 @@ def _exchanged(
 ) -> dict[str, str]:
     """Return the columns of two sides that texts say are exchanged, each by the other's field; none that was chosen."""
     for one in suspicions:
-        first, second = one.field.split(", ") if one.holds == "sides" else ("", "")
+        if one.holds != "sides":
+            continue
+        first, second = one.field.split(", ")
         columns = [mapping.columns.get(field) for field in (first, second)]
         names = [column.column for column in columns if column is not None and column.column is not None]
         if len(names) == 2 and not {first, second} & choices.keys():

@@ -9,6 +9,7 @@ import pytest
 
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
+from pipeline.records import Item
 
 MAPPING = """
 [source]
@@ -32,6 +33,12 @@ HEADER = "number,location,title,height,mass\n"
 
 Write = Callable[..., Path]
 Read = Callable[..., Reading]
+
+
+def one(reading: Reading) -> Item:
+    """Return the only object of a reading."""
+    (item,) = reading.items
+    return item
 
 
 @pytest.fixture

@@ -82,6 +82,26 @@ def _shares(samples: int) -> Array:
     return np.hstack([drawn, classes])
 
 
+def shares(name: str, samples: int | Sequence[int], most: int) -> Array:
+    """Return the shares of a distribution below which samples lie: of a role, or of a parameter.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    samples : int or sequence of int
+        The first so many, or those of these numbers.
+    most : int
+        Of how many at most.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    which = slice(samples) if isinstance(samples, int) else samples
+    return np.asarray(_shares(most)[which, _places()[name]])
+
+
 @dataclass(frozen=True)
 class Draw:
     """One joint sample.
@@ -119,8 +139,7 @@ class JointDraws:
 
     def share(self, name: str) -> Array:
         """Return the shares of a distribution below which each lies that is drawn, (n,)."""
-        numbers = [draw.number for draw in self.each]
-        return np.asarray(_shares(self.each[0].most)[numbers, _places()[name]][self.of])
+        return shares(name, [draw.number for draw in self.each], self.each[0].most)[self.of]
 
     def take(self, some: NDArray[np.intp]) -> "JointDraws":
         """Return the same samples, of some of what is drawn."""

@@ -33,7 +33,7 @@ from pipeline.analysis.likelihood.analyses import (
     kinds_of,
     possible_states,
 )
-from pipeline.analysis.likelihood.draws import ONE_CAUSE, Draw
+from pipeline.analysis.likelihood.draws import ONE_CAUSE, Draw, shares
 from pipeline.analysis.likelihood.shaking import drawn_motion, through
 from pipeline.analysis.likelihood.worth import most_telling
 from pipeline.analysis.loose import FINEST
@@ -112,10 +112,10 @@ def likelihoods(
 
 def _if_class(kinds: Sequence[Kind], harmed: NDArray[np.bool_], taken: int, sampling: Sampling) -> tuple[IfClass, ...]:
     """Return how likely harm is if an object is of each class that it may be of, of its own samples."""
-    shares = np.array([Draw(at, sampling.samples).share(CLASS) for at in range(taken)]) if kinds else np.zeros(0)
+    drawn = shares(CLASS, taken, sampling.samples)
     out = []
     for kind in kinds:
-        mine = (kind.start <= shares) & (shares < kind.end)
+        mine = (kind.start <= drawn) & (drawn < kind.end)
         n, hurt = int(mine.sum()), int((harmed[:taken] & mine).sum())
         p = hurt / n if n else None
         out.append(IfClass(kind.classes, kind.chance, p, n, None if p is None else sampling.band(p)))

@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.analysis.likelihood.draws import Draw
+from pipeline.analysis.likelihood.draws import shares
 from pipeline.quantities import Array
 from pipeline.records import Sampling
 from pipeline.records.likelihood import CLASS
@@ -81,16 +81,12 @@ def most_telling(
     for name, mask in sorted(uncertain.items()):
         some = np.flatnonzero(mask & (taken > 0))
         if some.size:
-            better(name, some, np.minimum((PARTS * _shares(name, n, sampling)).astype(int), PARTS - 1)[:, None])
+            better(name, some, np.minimum((PARTS * shares(name, n, sampling.samples)).astype(int), PARTS - 1)[:, None])
     if asked:
-        share = _shares(CLASS, n, sampling)
+        share = shares(CLASS, n, sampling.samples)
         part = np.array([np.searchsorted(ends, share, "right") for ends in asked.values()])
         better(CLASS, np.array([*asked]), part.T)
     return names, worth, moves
-
-
-def _shares(name: str, n: int, sampling: Sampling) -> Array:
-    return np.array([Draw(at, sampling.samples).share(name) for at in range(n)])
 
 
 def _worth(
