@@ -218,6 +218,9 @@ def _search(
         stretch[part, BEGIN_VY, k],
     )
     spans = max(1, math.ceil(w * dt * (1.0 + twice) / PHASE))
+    # Of one span, once for all: a stiff oscillator has hundreds of them in a sample interval.
+    span = dt / spans
+    g, h, h1, h2 = transition(w, factor[ZETA, k], span)
     # Roots of squares, as the lanes have them: hypot costs five times as much, and this is walked often.
     size = math.sqrt(ux * ux + uy * uy)
     for s in range(begin, end):
@@ -232,15 +235,17 @@ def _search(
             energy += interval_energy(y0 + (c * vy + b * uy), vy, y1 - y0, w, twice, ramp)
             gap, room = _gap_and_room(math.sqrt(energy), math.hypot(x1 - x0, y1 - y0), dt, twice, ramp, norm)
             if near + gap >= known[SIZE] and longest + room >= b * known[SIZE]:
-                rise_x, rise_y, span = (x1 - x0) / dt, (y1 - y0) / dt, dt / spans
+                rise_x, rise_y = (x1 - x0) / dt, (y1 - y0) / dt
                 gap_here = gap / (spans * spans)
                 here_ux, here_vx, here_uy, here_vy = ux, vx, uy, vy
                 for part_of in range(spans):
                     t = part_of * span
                     begin_x, begin_y = x0 + t * rise_x, y0 + t * rise_y
-                    then_ux, then_vx = advance(here_ux, here_vx, -begin_x, -rise_x, w, factor[ZETA, k], span)
-                    then_uy, then_vy = advance(here_uy, here_vy, -begin_y, -rise_y, w, factor[ZETA, k], span)
-                    ends = max(math.hypot(here_ux, here_uy), math.hypot(then_ux, then_uy))
+                    then_ux = here_ux * g + here_vx * h - (begin_x * h1 + rise_x * h2)
+                    then_vx = here_vx * (g - c * h) - here_ux * b * h - (begin_x * h + rise_x * h1)
+                    then_uy = here_uy * g + here_vy * h - (begin_y * h1 + rise_y * h2)
+                    then_vy = here_vy * (g - c * h) - here_uy * b * h - (begin_y * h + rise_y * h1)
+                    ends = math.sqrt(max(here_ux * here_ux + here_uy * here_uy, then_ux * then_ux + then_uy * then_uy))
                     if ends + gap_here >= known[SIZE]:
                         _longest(
                             here_ux, here_vx, here_uy, here_vy, begin_x, rise_x, begin_y, rise_y, factor, k, span, known

@@ -99,7 +99,8 @@ def _run(
             def held() -> Summary:
                 night = _planned(workspace, site, chosen, drawing, started, progress)
                 try:
-                    return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
+                    with night.staffed():
+                        return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
                 finally:
                     tidy(settings, night.context.motions)
 

@@ -4,7 +4,7 @@ import logging
 import warnings
 from array import array
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
@@ -47,7 +47,7 @@ all objects need.  Up to here threads share the kernels of one process, but only
 SHOWN = 4_000
 """Objects to be shown for which other processes do not pay."""
 
-BATCH = 16_000
+BATCH = 12_000
 """Units, about, that one worker assesses together at most: each model is called once for all of them under each
 motion, of which furniture makes fifteen of one.  Six times as many take 0.5 GB more of each worker."""
 
@@ -149,6 +149,8 @@ class Scheduler:
         self._work = self._missing()
         self.seconds = 0.0
         self.faults: list[Fault] = []
+        self._lasting: ExitStack | None = None
+        self._started: tuple[WorkerPool, RunContext] | None = None
 
     # -----------------------------------------------------------------------------------------------------------------
     # What there is
@@ -223,8 +225,21 @@ class Scheduler:
         self._neighbours()
 
     @contextmanager
+    def staffed(self) -> Iterator[None]:
+        """Let processes that assess draw the pages as well, within the block: they take seconds to start."""
+        with ExitStack() as lasting:
+            self._lasting = lasting
+            try:
+                yield
+            finally:
+                self._lasting = self._started = None
+
+    @contextmanager
     def workers(self, objects: int, *, showing: bool = False) -> Iterator[tuple[WorkerPool, RunContext]]:
         """Start workers for so many objects, and yield them with what they are to know."""
+        if self._started is not None:
+            yield self._started
+            return
         wanted = self.workspace.settings.execution
         if objects <= (SHOWN if showing else FEW):
             with pool() as here:
@@ -238,8 +253,14 @@ class Scheduler:
             with pool(address=wanted.cluster) as cluster:
                 yield cluster, replace(context, kept=None)
             return
-        with pool(processes=wanted.processes or cores()) as local:
-            yield local, context
+        local = pool(processes=wanted.processes or cores())
+        if self._lasting is not None and objects <= SHOWN:
+            # Of a large night they end first: what they remember is a gigabyte each.
+            self._started = self._lasting.enter_context(local), context
+            yield self._started
+            return
+        with local as started:
+            yield started, context
 
     def _batches(self, work: _Work, workers: int) -> list[Callable[[], UnitTask]]:
         """Part the units of a floor by their records, so that the same ones come together every night."""

@@ -84,26 +84,29 @@ def fit_counts(intensity: Array, taken: Array, failed: Array, least: float = 0.0
         Of each object.
     """
     middle = float(np.mean(np.log(intensity)))
-    x = (np.log(intensity) - middle)[:, None]
     some = (failed > 0.0).any(axis=0) & (taken > failed).any(axis=0)
-    k, n = failed[:, some].astype(float), taken[:, some].astype(float)
+    x, n, k = _tried((np.log(intensity) - middle)[:, None], taken[:, some], failed[:, some])
     low, high = 1.0 / most, 1.0 / max(least, 1e-3)
     b = np.full(k.shape[1], np.clip(2.0, low, high))
     a = -b * (_sum(n * x) / _sum(n))
-    found = _log_likelihood(a + b * x, n, k)
+    logs = _logs(a + b * x)
+    found = _log_likelihood(logs, n, k)
     # What is settled stays: nobody's digits hang on how long others take, and nobody waits for them.
     going = np.arange(a.size)
     for _ in range(ROUNDS):
-        ours = a[going], b[going], x, n[:, going], k[:, going]
-        next_a, next_b, better = _stepped(*ours, found[going], (low, high))
+        counts = x[:, going], n[:, going], k[:, going]
+        next_a, next_b, next_logs, better = _stepped(
+            a[going], b[going], *counts, logs[:, :, going], found[going], (low, high)
+        )
         gain = better - found[going]
         kept = gain >= 0.0
         moved = going[kept]
         a[moved], b[moved], found[moved] = next_a[kept], next_b[kept], better[kept]
+        logs[:, :, moved] = next_logs[:, :, kept]
         going = going[gain >= SETTLED]
         if going.size == 0:
             break
-    error, dispersion_error = _errors(a, b, x, n, k, (low, high))
+    error, dispersion_error = _errors(a, b, x, n, k, logs, (low, high))
     with np.errstate(divide="ignore", invalid="ignore"):
         whole = np.where(k > 0.0, k * np.log(k / n), 0.0) + np.where(k < n, (n - k) * np.log((n - k) / n), 0.0)
 
@@ -129,39 +132,59 @@ def _sum(rows: Array) -> Array:
     return total
 
 
-def _log_likelihood(z: Array, n: Array, k: Array) -> Array:
+def _tried(x: Array, taken: Array, failed: Array) -> tuple[Array, Array, Array]:
+    """Return intensities, trials and failures of each object where it was tried, in their order, and then nothing.
+
+    Objects are tried at a fourth of the intensities as a rule.
+    """
+    there = taken > 0.0
+    rows = np.argsort(~there, axis=0, kind="stable")[: int(there.sum(axis=0).max(initial=1))]
+    n, k = (np.take_along_axis(some, rows, axis=0).astype(float) for some in (taken, failed))
+    return np.where(n > 0.0, np.take_along_axis(np.broadcast_to(x, taken.shape), rows, axis=0), 0.0), n, k
+
+
+def _logs(z: Array) -> Array:
+    """Return the logarithms of the probabilities to fail and to stand."""
     from scipy.special import log_ndtr
 
-    return _sum(k * log_ndtr(z) + (n - k) * log_ndtr(-z))
+    return np.array([log_ndtr(z), log_ndtr(-z)])
 
 
-def _slopes(z: Array, n: Array, k: Array) -> tuple[Array, Array]:
+def _log_likelihood(logs: Array, n: Array, k: Array) -> Array:
+    return _sum(k * logs[0] + (n - k) * logs[1])
+
+
+def _slopes(z: Array, n: Array, k: Array, logs: Array) -> tuple[Array, Array]:
     """Return the derivative of ln likelihood to each z, and the information about it."""
-    from scipy.special import log_ndtr
-
     density = -0.5 * z * z - LOG_ROOT
-    failing, standing = np.exp(density - log_ndtr(z)), np.exp(density - log_ndtr(-z))
+    failing, standing = np.exp(density - logs[0]), np.exp(density - logs[1])
     return k * failing - (n - k) * standing, n * failing * standing
 
 
 def _stepped(
-    a: Array, b: Array, x: Array, n: Array, k: Array, found: Array, ends: tuple[float, float]
-) -> tuple[Array, Array, Array]:
-    """Return the curves a step further, halved where it loses, and their ln likelihoods."""
-    step_a, step_b = _step(a, b, x, n, k, ends)
+    a: Array, b: Array, x: Array, n: Array, k: Array, logs: Array, found: Array, ends: tuple[float, float]
+) -> tuple[Array, Array, Array, Array]:
+    """Return the curves a step further, halved where it loses, their logarithms and their ln likelihoods."""
+    step_a, step_b = _step(a, b, x, n, k, logs, ends)
     size = np.ones(a.shape)
+    next_a, next_b, next_logs, better = a.copy(), b.copy(), logs.copy(), found.copy()
+    worse = np.arange(a.size)
     for _half in range(HALVINGS):
-        next_a, next_b = a + size * step_a, np.clip(b + size * step_b, *ends)
-        better = _log_likelihood(next_a + next_b * x, n, k)
-        worse = better < found
-        if not worse.any():
+        next_a[worse] = a[worse] + size[worse] * step_a[worse]
+        next_b[worse] = np.clip(b[worse] + size[worse] * step_b[worse], *ends)
+        next_logs[:, :, worse] = _logs(next_a[worse] + next_b[worse] * x[:, worse])
+        better[worse] = _log_likelihood(next_logs[:, :, worse], n[:, worse], k[:, worse])
+        worse = worse[better[worse] < found[worse]]
+        if worse.size == 0:
             break
         size[worse] *= 0.5
-    return next_a, next_b, better
+    return next_a, next_b, next_logs, better
 
 
-def _step(a: Array, b: Array, x: Array, n: Array, k: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
-    slope, weight = _slopes(a + b * x, n, k)
+def _step(
+    a: Array, b: Array, x: Array, n: Array, k: Array, logs: Array, ends: tuple[float, float]
+) -> tuple[Array, Array]:
+    slope, weight = _slopes(a + b * x, n, k, logs)
     da, db = _sum(slope), _sum(slope * x)
     aa, ab, bb = (_sum(weight * x**power) for power in (0, 1, 2))
     whole = aa * bb - ab * ab
@@ -175,8 +198,10 @@ def _step(a: Array, b: Array, x: Array, n: Array, k: Array, ends: tuple[float, f
     return np.clip(step_a, -20.0, 20.0), step_b
 
 
-def _errors(a: Array, b: Array, x: Array, n: Array, k: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
-    weight = _slopes(a + b * x, n, k)[1]
+def _errors(
+    a: Array, b: Array, x: Array, n: Array, k: Array, logs: Array, ends: tuple[float, float]
+) -> tuple[Array, Array]:
+    weight = _slopes(a + b * x, n, k, logs)[1]
     aa, ab, bb = (_sum(weight * x**power) for power in (0, 1, 2))
     whole = aa * bb - ab * ab
     free = (b > ends[0]) & (b < ends[1]) & (whole > 1e-12 * aa * bb)
