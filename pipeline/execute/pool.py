@@ -7,7 +7,7 @@ depends on who was quicker.  A task that is run twice, because a worker died, gi
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 from pipeline.execute.workers import AHEAD, MissingClusterError, PoolError, Result, Shared, Task, WorkerPool
@@ -38,7 +38,7 @@ class SerialPool:
 
 
 @contextmanager
-def pool(*, address: str = "", processes: int = 0) -> Iterator[WorkerPool]:
+def pool(*, address: str = "", processes: int = 0, modules: Sequence[str] = ()) -> Iterator[WorkerPool]:
     """Start a pool of workers, and end it with the block, whatever happens.
 
     Parameters
@@ -48,6 +48,8 @@ def pool(*, address: str = "", processes: int = 0) -> Iterator[WorkerPool]:
         reached safely (TLS) is Dask's own configuration.
     processes : int
         Of this machine, where no address is given; 0 or 1: this process.
+    modules : sequence of str
+        What such a process imports before it is given anything to do.
 
     Raises
     ------
@@ -69,7 +71,7 @@ def pool(*, address: str = "", processes: int = 0) -> Iterator[WorkerPool]:
     elif processes > 1:
         from pipeline.execute.processes import ProcessPool
 
-        with ProcessPool(processes) as local:
+        with ProcessPool(processes, modules) as local:
             yield local
     else:
         yield SerialPool()

@@ -6,6 +6,7 @@ of them and does not say which task was at fault, and before Python 3.14 it cann
 
 from __future__ import annotations
 
+import importlib
 import logging
 import multiprocessing
 import os
@@ -15,7 +16,7 @@ import sys
 import threading
 import traceback
 from collections import deque
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
@@ -36,10 +37,10 @@ _SPAWN = multiprocessing.get_context("spawn")
 class _Worker:
     """A process of this machine, and the pipe to it; used by one thread at a time."""
 
-    def __init__(self) -> None:
+    def __init__(self, modules: Sequence[str]) -> None:
         self._pipe, theirs = _SPAWN.Pipe()
         # A daemon: it is ended with this process.
-        self._process: BaseProcess = _SPAWN.Process(target=_serve, args=(theirs,), daemon=True)
+        self._process: BaseProcess = _SPAWN.Process(target=_serve, args=(theirs, tuple(modules)), daemon=True)
         self._process.start()
         theirs.close()
         self._has: object = None
@@ -82,8 +83,9 @@ class ProcessPool:
     Each process has a thread here that waits for it, so that the next task goes to whoever is free.
     """
 
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, modules: Sequence[str] = ()) -> None:
         self.workers = workers
+        self._modules = modules
         self._lock = threading.Lock()
         self._closed = False
         self._idle: deque[_Worker] = deque()
@@ -165,7 +167,7 @@ class ProcessPool:
         with self._lock:
             if self._closed:
                 raise CancelledError
-            worker = _Worker()
+            worker = _Worker(self._modules)
             self._all.add(worker)
             return worker
 
@@ -178,12 +180,14 @@ class ProcessPool:
         return fresh
 
 
-def _serve(pipe: Connection) -> None:
+def _serve(pipe: Connection, modules: Sequence[str]) -> None:
     """Do in a worker what comes by the pipe, until it is closed or the process that started this one is gone."""
     # Ctrl-C goes to all processes of a terminal: the one that started this one ends it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     _one_thread_each()
+    for name in modules:
+        importlib.import_module(name)
     call: tuple[bool, Any] = (False, None)
     # Memory that ran out is given back whole by ending; the task is done again by another.
     with suppress(EOFError, OSError, MemoryError), collecting_rarely():

@@ -9,7 +9,7 @@ once for all who ask: a piece of it at a time, for each shaking and damping.
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from functools import cache, lru_cache, partial
+from functools import cache, partial
 from hashlib import blake2b
 from threading import Lock
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from pipeline.cache import SPECTRA, Cache, CacheEntry, key_of
 from pipeline.models.oscillator import oscillate_any
+from pipeline.models.remembering import remembered
 from pipeline.quantities import Array
 from pipeline.records import Excitation
 
@@ -54,10 +55,6 @@ _GRAIN = 2.0**30
 
 _KEPT = 32768
 """Pieces of spectra that are remembered, of 5 kB as a rule: without what they are spectra of."""
-
-
-_KNOWN = 256
-"""Shakings of which a digest, and what single oscillators do, are remembered."""
 
 _SINGLE = 4096
 """Oscillators that are remembered of each: those of what is worked on together, for which measures ask again."""
@@ -219,7 +216,7 @@ class _Singles:
         return push
 
 
-@lru_cache(maxsize=_KNOWN)
+@remembered
 def _singles(_motion: Excitation) -> _Singles:
     return _Singles()
 
@@ -240,7 +237,7 @@ def _ways(motion: Excitation) -> tuple[Array, ...]:
     return (motion.x,) if motion.y is None else (motion.x, motion.y)
 
 
-@lru_cache(maxsize=_KNOWN)
+@remembered
 def _identity(motion: Excitation) -> tuple[float, bytes]:
     """Return the peak of shaking, and a digest of what it is beside that."""
     peak = max(float(np.abs(way).max(initial=0.0)) for way in _ways(motion))

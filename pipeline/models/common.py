@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 
 from pipeline.kernels import flags, samples
 from pipeline.kernels.quiet import block_maxima, largest_ratio
+from pipeline.models.remembering import remembered
 from pipeline.quantities import Array, G
 from pipeline.records import Curve, Excitation, Scene, Support
 
@@ -42,13 +42,6 @@ NUDGE = 1e-6
 
 FAINTEST, FAINT = 1e-150, 1e-100
 """m/s2, the peak below which an excitation is magnified, and to what: far from g still, and from the end of numbers."""
-
-_KNOWN = 256
-"""Excitations whose peaks are remembered: a motion is asked for its own again and again."""
-
-_FEW = 16
-"""The same where most are those of a direction, which nobody asks for twice: each holds 0.2 MB."""
-
 
 SHIFT = 1e-3
 """m, from which on an object is said to have shifted: what a curator would see."""
@@ -128,7 +121,7 @@ def contact_lost(motion: Excitation, size: int) -> Array:
     return np.full(size, float(flags.CONTACT_LOST) if np.min(motion.z) < -G else 0.0)
 
 
-@lru_cache(maxsize=_KNOWN)
+@remembered
 def largest_push(motion: Excitation) -> float:
     """Return A_max: the peak along the direction, or the peak resultant of two.
 
@@ -149,7 +142,7 @@ _STRONGEST = 64
 """Samples that already tell most of the peaks along all directions."""
 
 
-@lru_cache(maxsize=_KNOWN)
+@remembered
 def smallest_push(motion: Excitation) -> float:
     """Return a lower bound of A_max along any direction; along the one of the excitation it is A_max itself.
 
@@ -218,7 +211,7 @@ def after_record(motion: Excitation) -> int:
     return 0 if motion.tail is None else int(np.ceil(motion.tail / motion.dt))
 
 
-@lru_cache(maxsize=_FEW)
+@remembered
 def lift_ratios(motion: Excitation) -> tuple[float, float]:
     """Return the largest -a / N and a / N over time, N = max(0, g + a_z): what lifts either edge of a body of slope 1.
 

@@ -20,16 +20,16 @@ methods for museum objects. Studies in Conservation 36. Sec. 2.3: F = m A.
 """
 
 from collections.abc import Mapping
-from functools import lru_cache
 
 import numpy as np
 
 from pipeline.models.common import NO_VERTICAL, ROUNDING, needs
+from pipeline.models.remembering import remembered
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Columns, Excitation, Harm, Model, Motion, Scene, Support, Trials
 
 
-@lru_cache(maxsize=256)
+@remembered
 def pull(motion: Motion) -> float:
     """Return the largest pull at the hangers of what moves with its wall, in multiples of its weight.
 

@@ -173,7 +173,8 @@ class Publication:
 
     def _each_rendered(self, pages: Sequence[_PublishedPage], *, draw: bool) -> Generator[Rendered]:
         objects = sum(len(page.planned.part.objects) for page in pages)
-        with self._scheduler.workers(objects, showing=True) as (workers, context):
+        scheduler = self._scheduler
+        with scheduler.staff.workers(objects, scheduler.context, showing=True) as (workers, context):
             tasks = (self._page_task(page, draw=draw) for page in pages)
             with closing(workers.each(render_page, context, tasks)) as done:
                 yield from done

@@ -22,6 +22,7 @@ from pipeline.night.publication import Publication
 from pipeline.night.reading_summary import doubts_of
 from pipeline.night.scheduler import Scheduler
 from pipeline.night.source_state import unchanged
+from pipeline.night.staff import Staff
 from pipeline.night.stocks import keep_stocks
 from pipeline.operations.dry_run import DryRunWarning, rehearsed
 from pipeline.operations.presentation import terms_of
@@ -92,15 +93,15 @@ def _run(
             # A run that was cut off when its report was shown already, and that the database did not hear of.
             mark_finished(workspace.engine, shown.run_id)
         site = _read_site(workspace, progress)
-        with pictures(workspace, site) as drawing:
+        with Staff(settings.execution) as staff, pictures(workspace, site) as drawing:
             if not (resume and _was_read(workspace, cut_off)):
-                _refresh(workspace, progress, dry_run=dry_run)
+                new = _refresh(workspace, progress, dry_run=dry_run)
+                staff.call(0 if chosen else new)
 
             def held() -> Summary:
-                night = _planned(workspace, site, chosen, drawing, started, progress)
+                night = _planned(workspace, site, chosen, drawing, started, progress, staff)
                 try:
-                    with night.staffed():
-                        return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
+                    return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
                 finally:
                     tidy(settings, night.context.motions)
 
@@ -116,14 +117,20 @@ def _run(
 
 
 def _planned(
-    workspace: Workspace, site: Site, chosen: Selection, drawing: Pictures, started: datetime, progress: Progress
+    workspace: Workspace,
+    site: Site,
+    chosen: Selection,
+    drawing: Pictures,
+    started: datetime,
+    progress: Progress,
+    staff: Staff,
 ) -> Scheduler:
     """Return the run with all that is shared in it made ready, and what there is to do known."""
     index = workspace.object_index()
     objects = _chosen(index.objects, chosen)
     context = run_context(workspace, site, index, objects, drawing, started, progress)
     charts = admit(context, index, objects, site.manifest.site.x_azimuth)
-    return Scheduler(workspace, context, index, objects, decisions_in_force(workspace.engine), charts)
+    return Scheduler(workspace, context, index, objects, decisions_in_force(workspace.engine), staff, charts)
 
 
 def _hold(night: Scheduler, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:
@@ -219,10 +226,12 @@ def _was_read(workspace: Workspace, cut_off: Status | None) -> bool:
     )
 
 
-def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None:
+def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> int:
+    """Bring the museum's source into the inventory, and return how many of its records are new or changed."""
     wanted = workspace.settings.collection
+    new = 0
     if not wanted.source:
-        return
+        return new
     progress.step("collection", 0, 1)
     if not unchanged(workspace, wanted.source, wanted.mapping):
         source = source_of(workspace, wanted.source)
@@ -237,7 +246,10 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
         )
         if dry_run and not workspace.scratch:
             _told(done)
+        elif done.changes:
+            new = done.changes.counts.added + done.changes.counts.changed
     progress.step("collection", 1, 1)
+    return new
 
 
 def _told(done: Imported) -> None:

@@ -3,8 +3,8 @@
 import logging
 import warnings
 from array import array
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
@@ -16,12 +16,11 @@ from pipeline.collection.database import Database
 from pipeline.collection.listing import Listing
 from pipeline.collection.object_index import ObjectIndex
 from pipeline.errors import DamageWarning
-from pipeline.execute.memory import give_back
-from pipeline.execute.pool import WorkerPool, cores, pool
 from pipeline.night.context import RunContext
 from pipeline.night.house_effects import house_effects
 from pipeline.night.paging import PagePart, paged
 from pipeline.night.source_state import rules_digest, tables_digest
+from pipeline.night.staff import FEW, Staff
 from pipeline.night.unit_tasks import (
     Assessments,
     ChartTask,
@@ -38,14 +37,6 @@ from pipeline.quantities import counted
 from pipeline.records import Progress
 from pipeline.store.pages import Members, known_pages, page_digest
 from pipeline.store.results import KeptResult, Made, Stored, copy, fetch, forget, keep, known
-
-FEW = 200
-"""Objects to be assessed for which other processes do not pay: each takes seconds to start, and does again some of what
-all objects need.  Up to here threads share the kernels of one process, but only one does the rest: two processes found
-400 objects in 0.82 of its time, and the demonstration in 0.75."""
-
-SHOWN = 4_000
-"""Objects to be shown for which other processes do not pay."""
 
 BATCH = 12_000
 """Units, about, that one worker assesses together at most: each model is called once for all of them under each
@@ -116,6 +107,8 @@ class Scheduler:
 
     Attributes
     ----------
+    staff
+        Those who work.
     pages
         What is on each page of the run.
     fresh
@@ -135,8 +128,10 @@ class Scheduler:
         index: ObjectIndex,
         objects: Listing,
         decisions: Decisions,
+        staff: Staff,
         charts: Sequence[ChartTask] = (),
     ) -> None:
+        self.staff = staff
         self.workspace, self.context, self.index, self.decisions = workspace, context, index, decisions
         self._charts = charts
         self.pages = self._planned(objects)
@@ -149,8 +144,6 @@ class Scheduler:
         self._work = self._missing()
         self.seconds = 0.0
         self.faults: list[Fault] = []
-        self._lasting: ExitStack | None = None
-        self._started: tuple[WorkerPool, RunContext] | None = None
 
     # -----------------------------------------------------------------------------------------------------------------
     # What there is
@@ -213,7 +206,7 @@ class Scheduler:
         if not store:
             self._memory = {}
         if self._work:
-            with self.workers(self.fresh) as (workers, context):
+            with self.staff.workers(self.fresh, self.context) as (workers, context):
                 if self._charts and context.kept is not None and self.fresh > FEW:
                     for at, _ in enumerate(workers.each(build_chart, context, self._charts)):
                         progress.step("response charts", at + 1, len(self._charts))
@@ -223,44 +216,6 @@ class Scheduler:
                 with closing(workers.each(assess_units, context, each)) as done:
                     self._take(done, number, progress)
         self._neighbours()
-
-    @contextmanager
-    def staffed(self) -> Iterator[None]:
-        """Let processes that assess draw the pages as well, within the block: they take seconds to start."""
-        with ExitStack() as lasting:
-            self._lasting = lasting
-            try:
-                yield
-            finally:
-                self._lasting = self._started = None
-
-    @contextmanager
-    def workers(self, objects: int, *, showing: bool = False) -> Iterator[tuple[WorkerPool, RunContext]]:
-        """Start workers for so many objects, and yield them with what they are to know."""
-        if self._started is not None:
-            yield self._started
-            return
-        wanted = self.workspace.settings.execution
-        if objects <= (SHOWN if showing else FEW):
-            with pool() as here:
-                yield here, self.context
-            return
-        # What reading the records and drawing the motions took is there for the workers.
-        give_back(objects)
-        context = replace(self.context, threads=1)
-        if wanted.cluster:
-            # Its workers may not see our folders.
-            with pool(address=wanted.cluster) as cluster:
-                yield cluster, replace(context, kept=None)
-            return
-        local = pool(processes=wanted.processes or cores())
-        if self._lasting is not None and objects <= SHOWN:
-            # Of a large night they end first: what they remember is a gigabyte each.
-            self._started = self._lasting.enter_context(local), context
-            yield self._started
-            return
-        with local as started:
-            yield started, context
 
     def _batches(self, work: _Work, workers: int) -> list[Callable[[], UnitTask]]:
         """Part the units of a floor by their records, so that the same ones come together every night."""

@@ -284,7 +284,7 @@ class Motion:
         return where
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Excitation:
     """The shaking of a one-direction or two-direction model.
 

@@ -13,6 +13,7 @@ from pipeline.night.figures import pictures
 from pipeline.night.prepare import admit, run_context
 from pipeline.night.publication import Publication
 from pipeline.night.scheduler import Scheduler
+from pipeline.night.staff import Staff
 from pipeline.operations.workspace import Workspace, open_workspace
 from pipeline.quantities import counted
 from pipeline.records import Progress, VerdictChange
@@ -174,10 +175,11 @@ def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, pro
         context = run_context(workspace, site, everything, everything.objects, drawing, datetime.now(UTC), progress)
     charts = admit(context, everything, everything.objects, site.manifest.site.x_azimuth)
     decisions = decisions_in_force(workspace.engine)
-    night = Scheduler(workspace, context, everything, everything.objects, decisions, charts)
-    night.assess(progress, store=False)
-    night.copy_results(engine)
-    head = replace(context.head, run_id=name, finished=context.head.started)
-    shown = Publication(night)
-    commit_run(engine, head, shown.pages, shown.rows(kept=True), counts={})
+    with Staff(workspace.settings.execution) as staff:
+        night = Scheduler(workspace, context, everything, everything.objects, decisions, staff, charts)
+        night.assess(progress, store=False)
+        night.copy_results(engine)
+        head = replace(context.head, run_id=name, finished=context.head.started)
+        shown = Publication(night)
+        commit_run(engine, head, shown.pages, shown.rows(kept=True), counts={})
     return night.fresh

@@ -16,7 +16,7 @@ from pipeline.execute.pool import SerialPool
 from pipeline.mitigate.installed import Placed
 from pipeline.models import model_named
 from pipeline.night import assessment as assessing
-from pipeline.night import scheduler
+from pipeline.night import scheduler, staff
 from pipeline.night.assessment import Assessed, likeness
 from pipeline.night.context import RunContext
 from pipeline.night.floors import Floor
@@ -168,10 +168,11 @@ class Pair(SerialPool):
 
 @pytest.fixture
 def pair(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scheduler, "FEW", 0)
-    monkeypatch.setattr(scheduler, "SHOWN", 0)
+    for module in (scheduler, staff):
+        monkeypatch.setattr(module, "FEW", 0)
+    monkeypatch.setattr(staff, "SHOWN", 0)
     monkeypatch.setattr(scheduler, "BATCH", 2)
-    monkeypatch.setattr(scheduler, "pool", lambda **_: nullcontext(Pair()))
+    monkeypatch.setattr(staff, "pool", lambda **_: nullcontext(Pair()))
 
 
 @pytest.mark.usefixtures("pair")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from distributed import LocalCluster
 
-from pipeline.night import scheduler
+from pipeline.night import scheduler, staff
 from pipeline.night.unit_tasks import Assessments
 from pipeline.settings import Settings
 from pipeline.store.results import Stored
@@ -34,8 +34,9 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
 def shared(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four batches of about eight objects, and others do the work whatever its size."""
     monkeypatch.setattr(scheduler, "BATCH", 8)
-    monkeypatch.setattr(scheduler, "FEW", 0)
-    monkeypatch.setattr(scheduler, "SHOWN", 0)
+    for module in (scheduler, staff):
+        monkeypatch.setattr(module, "FEW", 0)
+    monkeypatch.setattr(staff, "SHOWN", 0)
 
 
 def files(settings: Settings) -> dict[str, bytes]:

@@ -12,7 +12,7 @@ import pytest
 from pipeline.execute.pool import pool
 from pipeline.motions import site
 from pipeline.motions.pulses import WaveletPulse, shahi_baker_pulse
-from pipeline.night import scheduler
+from pipeline.night import scheduler, staff
 from pipeline.night.context import RunContext
 from pipeline.night.paging import paged
 from pipeline.night.unit_tasks import Assessments, UnitTask, assess_units
@@ -43,11 +43,12 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 
     What costs most and is not compared is left out: HTML.  A motion's pulse is found once.
     """
-    monkeypatch.setattr(scheduler, "FEW", 4)
-    monkeypatch.setattr(scheduler, "SHOWN", 4)
+    for module in (scheduler, staff):
+        monkeypatch.setattr(module, "FEW", 4)
+    monkeypatch.setattr(staff, "SHOWN", 4)
     monkeypatch.setattr(scheduler, "BATCH", 4)
     monkeypatch.setattr(scheduler, "_SECONDS", 0.0)
-    monkeypatch.setattr(scheduler, "pool", lambda **_: pool())
+    monkeypatch.setattr(staff, "pool", lambda **_: pool())
     monkeypatch.setattr(scheduler, "paged", partial(paged, most=5))
     monkeypatch.setattr(page_renderer, "fill", lambda *_: "")
     monkeypatch.setattr(report_writer, "fill", lambda *_: "")

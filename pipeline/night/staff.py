@@ -1,0 +1,80 @@
+"""Those who work in a run: this process, processes of this machine, or a cluster."""
+
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from typing import Self
+
+from pipeline.execute.memory import give_back
+from pipeline.execute.pool import WorkerPool, cores, pool
+from pipeline.night.context import RunContext
+from pipeline.settings import Execution
+
+FEW = 200
+"""Objects to be assessed for which other processes do not pay: each takes seconds to start, and does again some of what
+all objects need.  Up to here threads share the kernels of one process, but only one does the rest: two processes found
+400 objects in 0.82 of its time, and the demonstration in 0.75."""
+
+SHOWN = 4_000
+"""Objects to be shown for which other processes do not pay, unless they are there; and to be assessed, from which on
+they end before anything is shown: what each remembers is a gigabyte."""
+
+_MODULES = ("pipeline.night.unit_tasks", "pipeline.night.page_tasks")
+"""What a process that is started ahead makes ready meanwhile."""
+
+
+class Staff:
+    """Those who work in a run, until the end of the block; processes that assess draw the pages as well.
+
+    Parameters
+    ----------
+    wanted
+        How many of whom.
+    """
+
+    def __init__(self, wanted: Execution) -> None:
+        self._wanted = wanted
+        self._local: WorkerPool | None = None
+        self._stack = ExitStack()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        self._end()
+
+    def call(self, objects: int) -> None:
+        """Start processes for so many objects, if that pays, before it is known what there is to do."""
+        if objects > FEW and not self._wanted.cluster:
+            self._processes()
+
+    def _processes(self) -> WorkerPool:
+        if self._local is None:
+            local = pool(processes=self._wanted.processes or cores(), modules=_MODULES)
+            self._local = self._stack.enter_context(local)
+        return self._local
+
+    @contextmanager
+    def workers(
+        self, objects: int, context: RunContext, *, showing: bool = False
+    ) -> Iterator[tuple[WorkerPool, RunContext]]:
+        """Yield who works on so many objects, with what they are to know."""
+        if objects <= (SHOWN if showing and self._local is None else FEW):
+            with pool() as here:
+                yield here, context
+            return
+        # What reading the records and drawing the motions took is there for the workers.
+        give_back(objects)
+        context = replace(context, threads=1)
+        if self._wanted.cluster:
+            # Its workers may not see our folders.
+            with pool(address=self._wanted.cluster) as cluster:
+                yield cluster, replace(context, kept=None)
+            return
+        yield self._processes(), context
+        if objects > SHOWN:
+            self._end()
+
+    def _end(self) -> None:
+        self._local = None
+        self._stack.close()
