@@ -85,6 +85,10 @@ class Reader:
             elif kind == OPEN and not self.label and not self.fresh:
                 at = self._brackets(at)
                 continue
+            elif kind == OPEN and self.current and self._repeats(at):
+                self._remark()
+                at = self._conversions(at, self.current)
+                continue
             else:
                 self.label.append(at)
                 if kind == DOT and self._is_sentence():
@@ -217,16 +221,29 @@ class Reader:
         if self.tokens[at].type != NUMBER:
             return 0
         found = run_at(self.tokens, at, self.text)
-        if found is None or len(found[0]) != len(self.open):
+        if found is None or not self._are_open(found[0]):
             return 0
-        for a, b in zip(self.open, found[0], strict=True):
-            if a.unit is None or b.unit is None or a.unit.kind != b.unit.kind or a.unit.system == b.unit.system:
-                return 0
-            if a.kind not in ("length", "mass") or not agree(a.si(), b.si(), a.kind) or b.dimension:
-                return 0
         pair(self.open, found[0], self.notes)
         self.open = []
         return found[1]
+
+    def _are_open(self, items: list[DimensionQuantity]) -> bool:
+        """Whether numbers without labels are the open ones in the other system, each in agreement."""
+        if not items or len(items) != len(self.open):
+            return False
+        for a, b in zip(self.open, items, strict=True):
+            if a.unit is None or b.unit is None or a.unit.kind != b.unit.kind or a.unit.system == b.unit.system:
+                return False
+            if a.kind not in ("length", "mass") or not agree(a.si(), b.si(), a.kind) or b.dimension:
+                return False
+        return True
+
+    def _repeats(self, at: int) -> bool:
+        """Whether brackets behind a label repeat the numbers before it, so that it is theirs: 11 1/4 in., diam. (28.6 cm)."""
+        if len(self.label) > _LONGEST_REMARK or any(self.tokens[i].type == NUMBER for i in self.label):
+            return False
+        found = conversion_at(self.tokens, at, self.text)
+        return found is not None and self._are_open(found[0])
 
     def _joined(self, at: int, group: Group) -> int:
         """Read on in '6 in. (15 cm) x 8 in. (20 cm)': the next number goes on with that run; 0 where none does."""
@@ -243,7 +260,7 @@ class Reader:
 
     def _group(self, phrase: Phrase, items: list[DimensionQuantity]) -> Group:
         """Return the group that numbers belong to: the last one where they go on with it, else a new one."""
-        last = self._target(phrase)
+        last = self._target(phrase, items)
         if last is not None and not self.fresh:
             named = last.named() if "height" in last.named() else {q.dimension for q in last.quantities if q.dimension}
             spoken = [q.dimension or "".join(phrase.dimensions[-1:] if len(items) == 1 else "") for q in items]
@@ -272,11 +289,13 @@ class Reader:
         self.open = []
         return group
 
-    def _target(self, phrase: Phrase) -> Group | None:
+    def _target(self, phrase: Phrase, items: list[DimensionQuantity]) -> Group | None:
         """Return the group that a phrase's numbers may go on with: one of its name; without a name, the last whole."""
         if phrase.name:
-            alike = self.current is not None and self.current.name == phrase.name and bool(phrase.dimensions)
-            return self.current if alike else None
+            last = self.current
+            if last is None or last.name != phrase.name:
+                return None
+            return last if phrase.dimensions or (last.words and all(item.dimension for item in items)) else None
         return next((group for group in reversed(self.groups) if not group.aside), None)
 
     def _apply(self, phrase: Phrase, items: list[DimensionQuantity]) -> None:
