@@ -152,7 +152,7 @@ class Reader:
             return True
         if first.type == DOTTED or self.text[first.end : first.end + 1].isalpha():
             return False  # ".1b": the number of a component
-        if item.dimension:
+        if item.dimension or self._is_labelled():
             return tokens[behind].type != COLON
         if tokens[behind].type == OPEN:  # 11 (27.9 cm)
             other = conversion_at(tokens, behind, self.text)
@@ -161,6 +161,13 @@ class Reader:
             return False
         alone = not self.label or tokens[self.label[-1]].type == COLON
         return alone and (self.default_unit or (at == 0 and tokens[behind].type == END))
+
+    def _is_labelled(self) -> bool:
+        """Whether the words before a number are a label and what is known of parts: "H. avec couvercle 28"."""
+        if len(self.label) > _LONGEST_REMARK:
+            return False
+        phrase = phrase_of(self.tokens, self.label, self.text)
+        return bool(phrase.dimensions and phrase.name and phrase.known) and not phrase.joined
 
     def _conversions(self, at: int, group: Group) -> int:
         """Pair the numbers with the same in another system, in brackets or behind a stroke; return the token behind."""
@@ -239,7 +246,7 @@ class Reader:
         return True
 
     def _repeats(self, at: int) -> bool:
-        """Whether brackets behind a label repeat the numbers before it, so that it is theirs: 11 1/4 in., diam. (28.6 cm)."""
+        """Whether brackets behind a label repeat the numbers before it, which it then names: 11 in., diam. (28 cm)."""
         if len(self.label) > _LONGEST_REMARK or any(self.tokens[i].type == NUMBER for i in self.label):
             return False
         found = conversion_at(self.tokens, at, self.text)
@@ -281,7 +288,7 @@ class Reader:
             group.aside = bool(phrase.dimensions) or not items[0].dimension
         elif len(items) == 1 and phrase.name and not (phrase.dimensions or items[0].dimension):
             group.aside = any(_is_whole(other) for other in self.groups)  # length 60 cm; boom 20 cm; height 30 cm
-        elif len(items) == 1 and phrase.name and phrase.dimensions:
+        elif len(items) == 1 and phrase.name and phrase.dimensions and group.name != "overall":
             state = group.name.startswith(_BEHIND)
             group.aside = any(other.name == "overall" if state else not other.aside for other in self.groups)
         self.groups.append(group)
@@ -371,7 +378,7 @@ class Reader:
         """Use words that no number follows: for the numbers before them, as a note, or as the unread remainder."""
         label, self.label = self.label, []
         words = [at for at in label if self.tokens[at].type not in _ASIDE and self.tokens[at].word not in _STRAY]
-        if not words:
+        if all(self.tokens[at].meaning == ("filler", "") for at in words):
             return
         phrase = phrase_of(self.tokens, words, self.text)
         # "25 cm high, and 12 wide": what has a number of its own is not said of the numbers before it.
