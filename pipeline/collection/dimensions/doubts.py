@@ -61,6 +61,14 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
         if part.name in _labels() and part.value
     ]
     out += _base_beside(read, chosen)
+    if chosen.height is None:
+        out += [
+            DimensionNote(
+                "unused", f"whether {_shown(part, read)} is of the base or of all is not said", part.start, part.end
+            )
+            for part in read.parts
+            if is_base(part.name) and part.dimension == "height" and not part.assumed and part.value
+        ]
     if not (chosen.width or chosen.depth or chosen.diameter):
         out += [
             DimensionNote("unused", f"{_shown(part, read)} of {part.words!r} fills no field", part.start, part.end)

@@ -285,7 +285,11 @@ class Reader:
         words = self.text[phrase.start : phrase.end].strip(" \t:,.-–—") if phrase.name else ""
         group = Group(phrase.name or "overall", words, set(phrase.qualifiers))
         if len(items) == 1 and (is_base(group.name) or is_detail(group.name)):
-            group.aside = bool(phrase.dimensions) or not items[0].dimension
+            # "mouth diameter: 14 cm, diameter: 38 cm": an opening is measured across, and nothing else of it; so is a
+            # base where its name is no heading.
+            heads = any(self.tokens[at].type == COLON for at in self.label)
+            across = items[0].dimension == "diameter" and (is_opening(group.name) or not heads)
+            group.aside = across or bool(phrase.dimensions) or not items[0].dimension
         elif len(items) == 1 and phrase.name and not (phrase.dimensions or items[0].dimension):
             group.aside = any(_is_whole(other) for other in self.groups)  # length 60 cm; boom 20 cm; height 30 cm
         elif len(items) == 1 and phrase.name and phrase.dimensions and group.name != "overall":
