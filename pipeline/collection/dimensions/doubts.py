@@ -73,7 +73,12 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
         out += [
             DimensionNote("unused", f"{_shown(part, read)} of {part.words!r} fills no field", part.start, part.end)
             for part in read.parts
-            if part.group not in groups and part.dimension in _IN_PLAN and part.value and is_strange(part.name, about)
+            if part.group not in groups
+            and part.value
+            and (
+                (part.dimension in _IN_PLAN and is_strange(part.name, about))
+                or (part.dimension in ("width", "length") and is_detail(part.name))
+            )
         ]
     if not chosen.diameter and not (chosen.width and chosen.depth):
         out += [
