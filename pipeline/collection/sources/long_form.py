@@ -126,7 +126,8 @@ def _apart(row: Row, places: tuple[int, int, int | None, int | None], separator:
     fault = next((row.faults[at] for at in places[:2] if at in row.faults), None)
     cells = ["" if at is None else row.cells[at] for at in places]
     if not separator or fault is not None:
-        yield _Said(*cells, fault)
+        kind, value, unit, part = cells
+        yield _Said(kind, value, unit, part, fault)
         return
     pieces = [[piece.strip() for piece in cell.split(separator, _MOST)] for cell in cells]
     uneven = len(pieces[0]) != len(pieces[1])
@@ -135,8 +136,8 @@ def _apart(row: Row, places: tuple[int, int, int | None, int | None], separator:
         "give each kind its value, or leave the mapping's [source.long] separator out",
     )
     for at, kind in enumerate(pieces[0]):
-        said = [one[min(at, len(one) - 1)] for one in pieces]
-        yield _Said(kind, *said[1:], why if uneven else None)
+        value, unit, part = (one[min(at, len(one) - 1)] for one in pieces[1:])
+        yield _Said(kind, value, unit, part, why if uneven else None)
 
 
 def _measure(found: _Gathered, said: _Said) -> None:
