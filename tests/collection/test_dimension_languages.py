@@ -22,7 +22,7 @@ PLAIN = re.compile(r"(its )?\w+(, which lies in plan)?, of the object itself;")
 """How a note of a number begins that the text says nothing more of."""
 LANGUAGES = sorted({row["language"] for row in ROWS})
 MORE = json.loads((DATA.parent / "dimension_texts_more_languages.json").read_text(encoding="utf-8"))
-"""Of twenty languages, in the manner of many museums; "held back" and "fresh" were run once before the code was mended."""
+"""Of twenty languages, as many museums write; "held back" and "fresh" were run once before the code was mended."""
 NEAR = 0.006
 """Labels are rounded to 0.1 mm; the texts to 1 mm of at least 16 cm, or are exact."""
 

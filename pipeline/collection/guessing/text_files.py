@@ -56,9 +56,11 @@ def encoding_of(head: bytes) -> str:
     except UnicodeDecodeError as problem:
         if problem.start < len(head) - 4:
             japanese = [name for name in _DOUBLE if _kana(head, name) > 0.1]
-            if japanese:
-                return max(japanese, key=lambda name: _kana(head, name))
-            likely = max(_SINGLE, key=lambda name: _likeness(head, name))
+            likely = (
+                max(japanese, key=lambda name: _kana(head, name))
+                if japanese
+                else max(_SINGLE, key=lambda name: _likeness(head, name))
+            )
             return max((likely, *_SPOKEN), key=lambda name: _known_words(head, name))
     return "utf-8"
 
