@@ -377,27 +377,30 @@ def test_the_unit_of_texts_may_stand_in_their_name_and_a_lost_number_is_said(tmp
     assert any("no field takes the numbers of 'measurement_girth'" in doubt for doubt in found.doubts)
 
 
+TMS_COPY = """
+create table Objects (ObjectID integer primary key, ObjectNumber text, ObjectName text, OnView int);
+create table DimItemElemXrefs (DimItemElemXrefID integer primary key, TableID int, ID int);
+create table Dimensions (DimensionID integer primary key, DimItemElemXrefID int, DimensionTypeID int,
+                         PrimaryUnitID int, Dimension real);
+create table DimensionTypes (DimensionTypeID integer primary key, DimensionType text);
+create table DimensionUnits (UnitID integer primary key, UnitName text);
+create table ObjLocations (ObjLocationID integer primary key, ObjectID int, LocationID int);
+create table Locations (LocationID integer primary key, Site text, LocationString text);
+insert into Objects values (1, '2001.5', 'jar', 1), (2, '2001.6', 'chest', 1);
+insert into DimItemElemXrefs values (1, 108, 1), (2, 108, 2), (3, 47, 1);
+insert into DimensionTypes values (1, 'Height'), (2, 'Width');
+insert into DimensionUnits values (1, 'centimeters'), (2, 'inches');
+insert into Dimensions values (1, 1, 1, 1, 30), (2, 1, 2, 1, 22), (3, 2, 1, 2, 30), (4, 3, 1, 1, 999);
+insert into ObjLocations values (1, 1, 1), (2, 2, 1);
+insert into Locations values (1, 'Main', 'Main, Gallery 5')"""
+
+
 def test_a_copy_of_some_tables_of_tms_is_joined(tmp_path: Path) -> None:
     """Dimensions hang on rows for things of several tables, 108 the objects; the place is the whole string of it."""
     where = f"sqlite:///{tmp_path / 'copy.sqlite'}"
     engine = create_engine(where)
     with engine.begin() as connection:
-        for statement in """
-            create table Objects (ObjectID integer primary key, ObjectNumber text, ObjectName text, Medium text, OnView int);
-            create table DimItemElemXrefs (DimItemElemXrefID integer primary key, TableID int, ID int);
-            create table Dimensions (DimensionID integer primary key, DimItemElemXrefID int, DimensionTypeID int,
-                                     PrimaryUnitID int, Dimension real);
-            create table DimensionTypes (DimensionTypeID integer primary key, DimensionType text);
-            create table DimensionUnits (UnitID integer primary key, UnitName text);
-            create table ObjLocations (ObjLocationID integer primary key, ObjectID int, LocationID int);
-            create table Locations (LocationID integer primary key, Site text, LocationString text);
-            insert into Objects values (1, '2001.5', 'jar', 'stoneware', 1), (2, '2001.6', 'chest', 'oak', 1);
-            insert into DimItemElemXrefs values (1, 108, 1), (2, 108, 2), (3, 47, 1);
-            insert into DimensionTypes values (1, 'Height'), (2, 'Width');
-            insert into DimensionUnits values (1, 'centimeters'), (2, 'inches');
-            insert into Dimensions values (1, 1, 1, 1, 30), (2, 1, 2, 1, 22), (3, 2, 1, 2, 30), (4, 3, 1, 1, 999);
-            insert into ObjLocations values (1, 1, 1), (2, 2, 1);
-            insert into Locations values (1, 'Main', 'Main, Gallery 5')""".split(";"):
+        for statement in TMS_COPY.split(";"):
             connection.execute(text(statement))
     items = {item.object_number: item for item in read_items(where, guess(where).mapping).items}
     assert {number: (item.height_m, item.width_m) for number, item in items.items()} == {
