@@ -74,7 +74,9 @@ PICTURED = 0.03
 FACE = 0.5
 """Depth over the smaller side of its face up to which a thing may be a picture in its frame (judgement)."""
 SURE = 0.5
-"""Probability from which materials and measures alone say a class."""
+"""Probability from which materials and measures alone say a class, or that a thing is a sculpture or the like."""
+BODIES = ("statue", "standing_figure", "figurine", "object")
+"""Classes of what a title such as "Dancer" names beside a bare material; all of them stand."""
 FLOOR = 0.02
 """Chance that a museum means by its words what no labelled museum means: shared alike by all classes.
 
@@ -273,7 +275,13 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
     if is_alone(item) and item.title and SHAPES["panel"](item) and not read.outright and (faced or not read.silent):
         flat = next(one for one in chances if one.object_class in PICTURES)
         return flat if first.object_class in _standing() and flat.probability >= PICTURED else first
-    return None if read.silent and first.probability < SURE else first
+    if not read.silent or first.probability >= SURE:
+        return first
+    if item.object_name or item.classification or not (item.material or item.medium):
+        return None
+    # A free title beside a bare material, as works of sculpture have: bronze, "Dancer".
+    body = sum(one.probability for one in chances if one.object_class in BODIES)
+    return first if first.object_class in BODIES and body >= SURE else None
 
 
 @cache

@@ -5,7 +5,8 @@ What a row asks of a record, cell by cell (several entries of a cell are parted 
 aat            : one of these Getty AAT identifiers is recorded: then classification and words are not asked for
 classification : the museum's classification, or a part of its object name, is one of these, in singular or plural
 words          : the naming word is one of these; `*statuette` also takes words that end so (Bronzestatuette)
-medium         : material or medium has one of these words; what an object stands on (a base) does not count
+medium         : material or medium has one of these words; what an object stands on (a base) does not count;
+                 `=oil paint` is a medium of nothing else
 shape          : all of these measures hold (see `pipeline.analysis.shapes`)
 
 The naming word is the last known word of the object name or, if it knows none, of the title, each read up to its first
@@ -89,13 +90,16 @@ def stuff(material: str, medium: str) -> str:
 def words_of(entries: Iterable[str]) -> re.Pattern[str]:
     """Return what finds any of some words in what `fold` or `stuff` returns, in singular or plural, the longest first.
 
-    Words of scripts without spaces are found within others.
+    Words of scripts without spaces are found within others; `=oil paint` is all that there is, but for a date.
     """
-    words = sorted({fold(entry) for entry in entries}, key=lambda word: (-len(word), word))
+    entries = tuple(entries)
+    alone = sorted({re.escape(fold(entry[1:])) for entry in entries if entry.startswith("=")}, key=len, reverse=True)
+    whole = [rf"\A\s*(?:{'|'.join(alone)})s?\s*(?:[,;(.]?\D{{0,4}}\d{{4}}\b.*)?\Z"] if alone else []
+    words = sorted({fold(entry) for entry in entries if entry[:1] != "="}, key=lambda word: (-len(word), word))
     within = [word for word in words if _IDEOGRAPH.search(word)]
     apart = [re.escape(word) for word in words if word not in within]
     bounded = [rf"\b(?:{'|'.join(apart)})s?\b"] if apart else []
-    return re.compile("|".join([*bounded, *map(re.escape, within)]))
+    return re.compile("|".join([*whole, *bounded, *map(re.escape, within)]))
 
 
 @lru_cache(maxsize=65536)

@@ -18,7 +18,7 @@ _CODE = re.compile(r"(?:no|nr|n°|nº)?[\w°º]{0,2}\d*[\w]?|\d[\w]*", re.IGNORE
 _COMPOUND = re.compile(r"\w{3,}(?:depot|magazin)s?")
 _MOST_BESIDE = 3
 _MOST_FLAGS, _LONGEST_FLAG = 40, 80
-_CJK = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
+_CJK = re.compile("[\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7af]")
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, usual_place
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
-from pipeline.collection.guessing.names import bare
+from pipeline.collection.guessing.names import bare, is_side, unit_in
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -27,6 +27,7 @@ from pipeline.collection.guessing.source import (
 )
 from pipeline.collection.mapping import MAPPABLE, PRESETS, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
+from pipeline.collection.record import units_of
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.registry import is_address
 from pipeline.collection.sources.tables import as_database
@@ -183,6 +184,16 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
+        units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
+        if len(units) == 1:
+            document["dimensions"]["unit"] = units.pop()
+    taken = {id(column) for column in (*used, *texts)}
+    lost = [column for column in columns if id(column) not in taken and column.numeric and is_side(column.name)]
+    if lost:
+        told.doubts.append(
+            f"no field takes the numbers of {', '.join(repr(column.name) for column in lost[:10])}; --choose "
+            "height_m=COLUMN (or width_m, depth_m, diameter_m) takes one"
+        )
     places = [column for column in (found.get("gallery"), usual) if column is not None]
     stores = list(dict.fromkeys(filter(says_away, (place for column in places for place in column.distinct))))
     if stores:

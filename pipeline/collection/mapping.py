@@ -175,8 +175,8 @@ class Texts(MappingPart):
     )
     language: str = Field(
         default="",
-        description="Language of the texts (en, fr, de, nl, it, es, pt, ro, el, tr), which settles short labels, L. or "
-        "D.; without it the words of each text do.",
+        description="Language of the texts (en, fr, de, nl, it, es, pt, ro, el, tr, pl, cs, hu, ru), which settles "
+        "short labels, L. or D.; without it the words of each text do.",
     )
     framed: bool = Field(default=True, description="Whether works in frames hang in them: then the frame counts.")
     optional: bool = Field(default=False, description="The source may lack these columns.")

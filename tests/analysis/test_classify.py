@@ -126,7 +126,7 @@ NAMED = {
     "framed": "oil painting", "relief": "relief", "chandelier": "chandelier", "stemmed_glass": "goblet",
     "standing_figure": "statue", "bust": "bust", "statue": "statue", "figurine": "figurine", "vessel": "vase",
     "dish": "plate", "lamp": "candlestick", "cabinet": "cabinet", "seat": "chair", "table": "table", "clock": "clock",
-    "model": "architectural model", "object": "thing",
+    "model": "architectural model", "object": "telephone",
 }  # fmt: skip
 """A name for each class that has numbers, and so a way to it."""
 

@@ -110,3 +110,27 @@ def test_dangerous_confusions() -> None:
     figures, vessels = ("figurine", "statue", "standing_figure", "bust"), ("vessel", "dish", "stemmed_glass")
     assert sum(right in figures and found in vessels for right, found in pairs) <= 1
     assert sum(right in vessels and found in figures for right, found in pairs) == 0
+
+
+@pytest.mark.parametrize(
+    ("medium", "title", "sizes", "classes"),
+    [  # written as Tate writes it, labelled before any was run; sizes in m
+        ("Oil paint", "The Snail", (2.8, 2.8, None), {"framed"}),
+        ("Oil, 1956", "Horizon", (0.5, 0.6, 0.02), {"framed"}),
+        ("Ink", "Three Figures", (0.3, 0.2, None), {"framed", "small_flat"}),
+        ("Óleo", "Paisagem", (0.4, 0.6, None), {"framed"}),
+        ("Olieverf", "Gezicht op Delft", (0.4, 0.5, None), {"framed"}),
+        ("Bronze", "The Kiss of Judas", (0.6, 0.3, 0.3), {"statue", "figurine"}),
+        ("Steel and paint", "Red Sprung", (1.8, 1.2, 1.1), {"statue", "object"}),
+        ("Oil paint", "Cube", (0.5, 0.5, 0.5), {"statue", "figurine", "object"}),  # as deep as wide: no picture
+        ("Bronzo", "Cavallo e cavaliere", (0.5, 0.5, 0.25), {"statue", "figurine"}),
+    ],
+)
+def test_a_bare_medium_beside_a_free_title(
+    medium: str, title: str, sizes: tuple[float | None, ...], classes: set[str]
+) -> None:
+    height, width, depth = sizes
+    item = Item(
+        object_number="1", gallery="1", title=title, medium=medium, height_m=height, width_m=width, depth_m=depth
+    )
+    assert classify(item).object_class in classes

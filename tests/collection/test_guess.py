@@ -197,6 +197,11 @@ WORDS = {
     "cp1250": "ceramică, înălțime; cană, oală; Muzeul Național al Satului, sală, țesătură".replace("ț", "ţ"),
     "utf-8": "Höhe, Église, înălțime, 高さ",
     "utf-16": "Höhe, Église, înălțime, 高さ",
+    "cp1251": "Инвентарный номер; материал; высота 12 см; размеры; бронза",
+    "cp1253": "αριθμός ευρετηρίου; υλικό; ύψος 12 εκ.; διάμετρος",
+    "cp1254": "Envanter No; ölçüler; yükseklik 12 cm, genişlik, ağırlık; bulunduğu yer",
+    "gb18030": "文物号,名称,质地,高度,位置,尺寸",
+    "euc-kr": "유물번호,유물명,재질,높이,전시실,크기",
     "shift-jis": "資料番号は展示室にあります。高さと幅をはかる",
     "euc-jp": "資料番号は展示室にあります。高さと幅をはかる",
 }
@@ -309,3 +314,97 @@ def test_joins_are_proposed_for_a_database_with_declared_keys(url: str) -> None:
     first, second = read_items(url, found.mapping).items
     assert (first.object_number, first.height_m, first.width_m) == ("A.1", 0.205, 0.254)
     assert (second.object_number, second.height_m, second.mass_kg) == ("A.2", None, 3.0)
+
+
+def test_central_european_files_are_known_by_their_words() -> None:
+    for head in ("Nr inwentarzowy;Materiał;wysokość: 12 cm, średnica", "Inventární číslo;Předmět;Výška (cm);Umístění"):
+        content = head.encode("cp1250")
+        assert content.decode(encoding_of(content)) == head
+
+
+@pytest.mark.parametrize(
+    ("name", "field"),
+    [
+        ("measurement_height", "height_m"),
+        ("measurement_outside_diameter", "diameter_m"),
+        ("ca_objects.dimensions.dimensions_width", "width_m"),
+        ("ca_storage_locations.hierarchy.preferred_labels.name", "gallery"),
+        ("ca_objects.on_display", "on_display"),
+        ("main_reference_number", "object_number"),
+        ("Miejsce przechowywania", "gallery"),
+        ("Šířka (cm)", "width_m"),
+        ("Инвентарный номер", "object_number"),
+    ],
+)
+def test_names_of_other_systems(name: str, field: str) -> None:
+    found = named(name)
+    assert found is not None
+    assert found.field == field
+
+
+def test_cells_of_several_measurements_are_taken_apart(tmp_path: Path) -> None:
+    """As Axiell exports fields that repeat; a row whose kinds and values are not as many is refused by name."""
+    path = tmp_path / "axiell.csv"
+    path.write_text(
+        "objectnummer;objectnaam;afmeting.soort;afmeting.waarde;afmeting.eenheid;standplaats;gallery_text\n"
+        "A 1;kast;hoogte$breedte$diepte;220,5$206$83,5;cm$cm$cm;Zaal 7;\n"
+        "A 2;vaas;hoogte$diameter;435$250;mm$mm;Zaal 7;\n"
+        "A 3;vaas;hoogte$diameter;30;cm;Zaal 7;\n"
+        "A 4;buste;hoogte$gewicht;82$95;cm$kg;Zaal 8;\n",
+        encoding="utf-8",
+    )
+    reading = read_items(path, guess(path).mapping)
+    sizes = {item.object_number: (item.height_m, item.width_m, item.depth_m, item.mass_kg) for item in reading.items}
+    assert sizes["A 1"] == (pytest.approx(2.205), 2.06, pytest.approx(0.835), None)
+    assert sizes["A 2"] == (pytest.approx(0.435), 0.25, 0.25, None)
+    assert sizes["A 4"] == (0.82, None, None, 95.0)
+    (broken,) = [item for item in reading.items if item.object_number == "A 3"]
+    assert sizes["A 3"][0] is None
+    assert any("2 kinds of measurement stand beside 1 values" in problem.message for problem in broken.problems)
+
+
+def test_the_unit_of_texts_may_stand_in_their_name_and_a_lost_number_is_said(tmp_path: Path) -> None:
+    path = tmp_path / "matriz.csv"
+    path.write_text(
+        "Inventário,Denominação,Dimensões (cm),Localização,measurement_girth,gallery_text\n"
+        + "".join(f"{n} Cer,Pote,altura: {n},Sala 2,{n + 5},\n" for n in range(10, 20)),
+        encoding="utf-8",
+    )
+    found = guess(path)
+    assert found.mapping.dimensions is not None
+    assert found.mapping.dimensions.unit == "cm"
+    assert found.mapping.columns["gallery"].column == "Localização"
+    assert any("no field takes the numbers of 'measurement_girth'" in doubt for doubt in found.doubts)
+
+
+TMS_COPY = """
+create table Objects (ObjectID integer primary key, ObjectNumber text, ObjectName text, OnView int);
+create table DimItemElemXrefs (DimItemElemXrefID integer primary key, TableID int, ID int);
+create table Dimensions (DimensionID integer primary key, DimItemElemXrefID int, DimensionTypeID int,
+                         PrimaryUnitID int, Dimension real);
+create table DimensionTypes (DimensionTypeID integer primary key, DimensionType text);
+create table DimensionUnits (UnitID integer primary key, UnitName text);
+create table ObjLocations (ObjLocationID integer primary key, ObjectID int, LocationID int);
+create table Locations (LocationID integer primary key, Site text, LocationString text);
+insert into Objects values (1, '2001.5', 'jar', 1), (2, '2001.6', 'chest', 1);
+insert into DimItemElemXrefs values (1, 108, 1), (2, 108, 2), (3, 47, 1);
+insert into DimensionTypes values (1, 'Height'), (2, 'Width');
+insert into DimensionUnits values (1, 'centimeters'), (2, 'inches');
+insert into Dimensions values (1, 1, 1, 1, 30), (2, 1, 2, 1, 22), (3, 2, 1, 2, 30), (4, 3, 1, 1, 999);
+insert into ObjLocations values (1, 1, 1), (2, 2, 1);
+insert into Locations values (1, 'Main', 'Main, Gallery 5')"""
+
+
+def test_a_copy_of_some_tables_of_tms_is_joined(tmp_path: Path) -> None:
+    """Dimensions hang on rows for things of several tables, 108 the objects; the place is the whole string of it."""
+    where = f"sqlite:///{tmp_path / 'copy.sqlite'}"
+    engine = create_engine(where)
+    with engine.begin() as connection:
+        for statement in TMS_COPY.split(";"):
+            connection.execute(text(statement))
+    items = {item.object_number: item for item in read_items(where, guess(where).mapping).items}
+    assert {number: (item.height_m, item.width_m) for number, item in items.items()} == {
+        "2001.5": (0.3, 0.22),
+        "2001.6": (pytest.approx(0.762), None),
+    }
+    assert {item.gallery for item in items.values()} == {"Main, Gallery 5"}

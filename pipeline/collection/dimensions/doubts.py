@@ -6,7 +6,7 @@ import re
 from functools import cache
 
 from pipeline.collection.dimensions.lexicon import label_words, meanings
-from pipeline.collection.dimensions.parts import is_base
+from pipeline.collection.dimensions.parts import is_base, is_detail
 from pipeline.collection.dimensions.result import Chosen, DimensionNote, DimensionPart, Dimensions
 
 _CARRIERS = frozenset({
@@ -16,6 +16,8 @@ _CARRIERS = frozenset({
 })  # fmt: skip
 """What a work on paper or in parts is made of and kept in: such sizes are the object's, as far as the text tells."""
 _IN_PLAN = frozenset({"width", "depth", "diameter"})
+_NUMBERING = frozenset("abcdefg")
+"""Letters that number components."""
 _LETTERS = re.compile(r"[^\W\d_]+")
 _SHARE_OF_HEIGHT = 0.05
 """Height of a base over that of the object from which it matters whether the one is in the other."""
@@ -59,11 +61,33 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
         if part.name in _labels() and part.value
     ]
     out += _base_beside(read, chosen)
+    if chosen.height is None:
+        out += [
+            DimensionNote(
+                "unused", f"whether {_shown(part, read)} is of the base or of all is not said", part.start, part.end
+            )
+            for part in read.parts
+            if is_base(part.name) and part.dimension == "height" and not part.assumed and part.value
+        ]
     if not (chosen.width or chosen.depth or chosen.diameter):
         out += [
             DimensionNote("unused", f"{_shown(part, read)} of {part.words!r} fills no field", part.start, part.end)
             for part in read.parts
-            if part.group not in groups and part.dimension in _IN_PLAN and part.value and is_strange(part.name, about)
+            if part.group not in groups
+            and part.value
+            and (
+                (part.dimension in _IN_PLAN and is_strange(part.name, about))
+                or (part.dimension in ("width", "length") and is_detail(part.name))
+            )
+        ]
+    if not chosen.diameter and not (chosen.width and chosen.depth):
+        out += [
+            DimensionNote("unused", f"what {part.words!r} means is not known", part.start, part.end)
+            for part in read.parts
+            if part.group not in groups
+            and part.dimension == "unlabelled"
+            and part.value
+            and _is_foreign(part.name, about)
         ]
     out += [
         DimensionNote("unused", f"{_shown(part, read)} is taken as the height, which is not said", part.start, part.end)
@@ -72,7 +96,11 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
         and part.name.startswith("with ") and chosen.width
     ]  # fmt: skip
     for part in read.parts:
-        if body is not None and (part.start, part.end) == (body.start, body.end) and is_strange(part.name, about):
+        if (
+            body is not None
+            and (part.start, part.end) == (body.start, body.end)
+            and (is_strange(part.name, about) or _is_foreign(part.name, about))
+        ):
             message = f"the size of {part.words!r} is taken for that of the whole object"
             out.append(DimensionNote("part", message, part.start, part.end))
     return tuple(out)
@@ -117,10 +145,23 @@ def is_strange(name: str, about: str) -> bool:
     )
 
 
+def _is_foreign(name: str, about: str) -> bool:
+    """Whether no word of the name of a part is known, so that it may be the word of another language for a side."""
+    own = {_stem(word) for word in about.casefold().split()}
+    words = _LETTERS.findall(name.casefold())
+    return (
+        bool(words)
+        and not is_detail(name)
+        and not any(
+            word in meanings() or word in _named() or word in _NUMBERING or _stem(word) in own for word in words
+        )
+    )
+
+
 @cache
 def _labels() -> frozenset[str]:
     """Return labels of some language that as the name of a part are labels that were not understood."""
-    return frozenset(label for label in label_words() if len(label) < 3) - frozenset("abcdefg")
+    return frozenset(label for label in label_words() if len(label) < 3) - _NUMBERING
 
 
 @cache

@@ -35,6 +35,8 @@ _UPRIGHT = "縦"
 _COMPONENTS = frozenset("ab")
 """A text that has both numbers its components with letters."""
 _NUMBERING = frozenset("abcdefg")
+_TURKISH = frozenset({"boy", "yükseklik", "yük", "derinlik"})
+"""Beside one of these "en" is the width, and no preposition."""
 _ROUND = ("en", "nl", "de")
 """Languages whose D is the depth or thickness, but beside no width the diameter."""
 _IN_PLAN = frozenset({"width", "depth", "length", "thickness"})
@@ -61,6 +63,8 @@ def labelled(tokens: list[Token], text: str, language: str, notes: list[Dimensio
     """
     tokens = _upright(tokens)
     places = list(_places(tokens, text))
+    if not _TURKISH.intersection(token.word for token in tokens):
+        places = [at for at in places if tokens[at].word != "en"]
     if _COMPONENTS.issubset({token.word for token in tokens}):
         places = [at for at in places if tokens[at].word not in _NUMBERING]
     if not places:

@@ -15,6 +15,10 @@ from pipeline.tables.rows import Entries, Text, checked
 
 _COMPOUND = "compound"
 _SPOKEN = "language"
+ALIKE = str.maketrans("şţŞŢİıάέήίόύώϊϋΐΰΆΈΉΊΌΎΏ", "șțȘȚIiαεηιουωιυιυΑΕΗΙΟΥΩ")
+"""Letters that people write for one another, and in capitals cannot tell apart: the cedillas that stood for the commas
+of Romanian and are letters of Turkish, its two i, the accents of Greek.  Texts and tables are read with them replaced.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +56,7 @@ class LabelLanguage:
 
     def meaning(self, label: str) -> str:
         """Return what a label means, "" where the language does not know it."""
+        label = label.translate(ALIKE)
         return self.labels.get(label) or self.folded.get(label.lower(), "")
 
 
@@ -107,21 +112,25 @@ def units() -> dict[str, LexiconUnit]:
 def unit_words() -> dict[str, LexiconUnit]:
     """Return the units by every word and mark that stands for one, in small letters."""
     by_name = units()
-    return {word: by_name[row.unit] for row in _unit_rows() for word in row.words}
+    return {word.translate(ALIKE): by_name[row.unit] for row in _unit_rows() for word in row.words}
 
 
 @cache
 def meanings() -> dict[str, tuple[str, str]]:
     """Return kind and meaning of every word that is not a unit, in small letters."""
     rows = checked(_Word, table("dimension_words"), "dimension_words.csv", named="words")
-    return {word: (row.kind, row.meaning) for row in rows if row.kind != _COMPOUND for word in row.words}
+    return {
+        word.translate(ALIKE): (row.kind, row.meaning) for row in rows if row.kind != _COMPOUND for word in row.words
+    }
 
 
 @cache
 def compounds() -> dict[str, tuple[str, ...]]:
     """Return the words that say several things at once, such as Gesamthöhe, with the plain words for them."""
     rows = checked(_Word, table("dimension_words"), "dimension_words.csv", named="words")
-    return {word: tuple(row.meaning.split()) for row in rows if row.kind == _COMPOUND for word in row.words}
+    return {
+        word.translate(ALIKE): tuple(row.meaning.split()) for row in rows if row.kind == _COMPOUND for word in row.words
+    }
 
 
 @cache
@@ -138,9 +147,10 @@ def languages() -> dict[str, LabelLanguage]:
     for name in dict.fromkeys(row.language for row in rows):
         own = [row for row in rows if row.language == name]
         labels = {label: row.meaning for row in own if row.meaning != _SPOKEN for label in row.labels}
+        labels = {label.translate(ALIKE): meaning for label, meaning in labels.items()}
         folded: dict[str, str] = {}
         for label, meaning in labels.items():
             folded.setdefault(label.lower(), meaning)
-        words = frozenset(word for row in own if row.meaning == _SPOKEN for word in row.labels)
+        words = frozenset(word.translate(ALIKE) for row in own if row.meaning == _SPOKEN for word in row.labels)
         out[name] = LabelLanguage(name, labels, folded, words)
     return out

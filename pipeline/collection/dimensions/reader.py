@@ -85,6 +85,10 @@ class Reader:
             elif kind == OPEN and not self.label and not self.fresh:
                 at = self._brackets(at)
                 continue
+            elif kind == OPEN and self.current and self._repeats(at):
+                self._remark()
+                at = self._conversions(at, self.current)
+                continue
             else:
                 self.label.append(at)
                 if kind == DOT and self._is_sentence():
@@ -148,7 +152,7 @@ class Reader:
             return True
         if first.type == DOTTED or self.text[first.end : first.end + 1].isalpha():
             return False  # ".1b": the number of a component
-        if item.dimension:
+        if item.dimension or self._is_labelled():
             return tokens[behind].type != COLON
         if tokens[behind].type == OPEN:  # 11 (27.9 cm)
             other = conversion_at(tokens, behind, self.text)
@@ -157,6 +161,13 @@ class Reader:
             return False
         alone = not self.label or tokens[self.label[-1]].type == COLON
         return alone and (self.default_unit or (at == 0 and tokens[behind].type == END))
+
+    def _is_labelled(self) -> bool:
+        """Whether the words before a number are a label and what is known of parts: "H. avec couvercle 28"."""
+        if len(self.label) > _LONGEST_REMARK:
+            return False
+        phrase = phrase_of(self.tokens, self.label, self.text)
+        return bool(phrase.dimensions and phrase.name and phrase.known) and not phrase.joined
 
     def _conversions(self, at: int, group: Group) -> int:
         """Pair the numbers with the same in another system, in brackets or behind a stroke; return the token behind."""
@@ -217,16 +228,29 @@ class Reader:
         if self.tokens[at].type != NUMBER:
             return 0
         found = run_at(self.tokens, at, self.text)
-        if found is None or len(found[0]) != len(self.open):
+        if found is None or not self._are_open(found[0]):
             return 0
-        for a, b in zip(self.open, found[0], strict=True):
-            if a.unit is None or b.unit is None or a.unit.kind != b.unit.kind or a.unit.system == b.unit.system:
-                return 0
-            if a.kind not in ("length", "mass") or not agree(a.si(), b.si(), a.kind) or b.dimension:
-                return 0
         pair(self.open, found[0], self.notes)
         self.open = []
         return found[1]
+
+    def _are_open(self, items: list[DimensionQuantity]) -> bool:
+        """Whether numbers without labels are the open ones in the other system, each in agreement."""
+        if not items or len(items) != len(self.open):
+            return False
+        for a, b in zip(self.open, items, strict=True):
+            if a.unit is None or b.unit is None or a.unit.kind != b.unit.kind or a.unit.system == b.unit.system:
+                return False
+            if a.kind not in ("length", "mass") or not agree(a.si(), b.si(), a.kind) or b.dimension:
+                return False
+        return True
+
+    def _repeats(self, at: int) -> bool:
+        """Whether brackets behind a label repeat the numbers before it, which it then names: 11 in., diam. (28 cm)."""
+        if len(self.label) > _LONGEST_REMARK or any(self.tokens[i].type == NUMBER for i in self.label):
+            return False
+        found = conversion_at(self.tokens, at, self.text)
+        return found is not None and self._are_open(found[0])
 
     def _joined(self, at: int, group: Group) -> int:
         """Read on in '6 in. (15 cm) x 8 in. (20 cm)': the next number goes on with that run; 0 where none does."""
@@ -243,7 +267,7 @@ class Reader:
 
     def _group(self, phrase: Phrase, items: list[DimensionQuantity]) -> Group:
         """Return the group that numbers belong to: the last one where they go on with it, else a new one."""
-        last = self._target(phrase)
+        last = self._target(phrase, items)
         if last is not None and not self.fresh:
             named = last.named() if "height" in last.named() else {q.dimension for q in last.quantities if q.dimension}
             spoken = [q.dimension or "".join(phrase.dimensions[-1:] if len(items) == 1 else "") for q in items]
@@ -261,10 +285,14 @@ class Reader:
         words = self.text[phrase.start : phrase.end].strip(" \t:,.-–—") if phrase.name else ""
         group = Group(phrase.name or "overall", words, set(phrase.qualifiers))
         if len(items) == 1 and (is_base(group.name) or is_detail(group.name)):
-            group.aside = bool(phrase.dimensions) or not items[0].dimension
+            # "mouth diameter: 14 cm, diameter: 38 cm": an opening is measured across, and nothing else of it; so is a
+            # base where its name is no heading.
+            heads = any(self.tokens[at].type == COLON for at in self.label)
+            across = items[0].dimension == "diameter" and (is_opening(group.name) or not heads)
+            group.aside = across or bool(phrase.dimensions) or not items[0].dimension
         elif len(items) == 1 and phrase.name and not (phrase.dimensions or items[0].dimension):
             group.aside = any(_is_whole(other) for other in self.groups)  # length 60 cm; boom 20 cm; height 30 cm
-        elif len(items) == 1 and phrase.name and phrase.dimensions:
+        elif len(items) == 1 and phrase.name and phrase.dimensions and group.name != "overall":
             state = group.name.startswith(_BEHIND)
             group.aside = any(other.name == "overall" if state else not other.aside for other in self.groups)
         self.groups.append(group)
@@ -272,11 +300,13 @@ class Reader:
         self.open = []
         return group
 
-    def _target(self, phrase: Phrase) -> Group | None:
+    def _target(self, phrase: Phrase, items: list[DimensionQuantity]) -> Group | None:
         """Return the group that a phrase's numbers may go on with: one of its name; without a name, the last whole."""
         if phrase.name:
-            alike = self.current is not None and self.current.name == phrase.name and bool(phrase.dimensions)
-            return self.current if alike else None
+            last = self.current
+            if last is None or last.name != phrase.name:
+                return None
+            return last if phrase.dimensions or (last.words and all(item.dimension for item in items)) else None
         return next((group for group in reversed(self.groups) if not group.aside), None)
 
     def _apply(self, phrase: Phrase, items: list[DimensionQuantity]) -> None:
@@ -352,7 +382,7 @@ class Reader:
         """Use words that no number follows: for the numbers before them, as a note, or as the unread remainder."""
         label, self.label = self.label, []
         words = [at for at in label if self.tokens[at].type not in _ASIDE and self.tokens[at].word not in _STRAY]
-        if not words:
+        if all(self.tokens[at].meaning == ("filler", "") for at in words):
             return
         phrase = phrase_of(self.tokens, words, self.text)
         # "25 cm high, and 12 wide": what has a number of its own is not said of the numbers before it.

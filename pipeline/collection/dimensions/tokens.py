@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from pipeline.collection.dimensions.lexicon import LexiconUnit, compounds, label_words, meanings, unit_words
+from pipeline.collection.dimensions.lexicon import ALIKE, LexiconUnit, compounds, label_words, meanings, unit_words
 
 NUMBER, DOTTED, WORD, UNIT, DIMENSION, JOIN, OPEN, CLOSE, BREAK, COMMA, COLON, DASH, DOT, TIME, OTHER, END = range(16)
 
@@ -37,9 +37,9 @@ _TOKEN = re.compile(
     rf"|([\r\n;\u2028\u2029]+)"
     rf"|(\S))",
 )
-# Full-width letters, digits and marks; the cedillas that stood for the commas of Romanian.
+# Full-width letters, digits and marks; letters that are alike.
 _ALIKE = {code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)} | {0x3000: 0x20, 0xFF0E: 0x2E}
-_ALIKE |= {ord(old): ord(new) for old, new in zip("şţŞŢ±≈∅", "șțȘȚ~~Ø", strict=True)}
+_ALIKE |= ALIKE | {ord("∅"): ord("Ø")}
 _ALIKE[0xB1] = _ALIKE[0x2248] = 0x20
 _EXTREMES = "max|maximum|maxi|maximal|min|minimum|overall|greatest|total|approx|ca"
 # Each as long as what it replaces, so that the places of all characters stay.
@@ -47,6 +47,8 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\bw/o\b"), "sem"),
     (re.compile(r"(?i)\bw/(?=[ (]|base|frame|mount|lid|stand)"), "cu"),
     (re.compile(r"(?i)(?<![^\W_])c/(?=[ (]?[^\W\d_])"), "cu"),
+    # víkem, podstavcem ...: Czech and Russian "with" is a letter that elsewhere is an English s or a label.
+    (re.compile(r"(?i)(?<![^\W_])[sс](?= (?:ví[kč]|podstav|rám|sokl|подстав|крышк|рам|основан))"), "z"),
     (re.compile(r"(?i)(?<![^\W_])s/(?=[ (]?[^\W\d_])"), "ss"),
     (re.compile(r"(?:(?<=[^\W\d_]{3} )|(?<=[^\W\d_]{3}: ))c\.(?=\s*\d)"), "ca"),  # weight c. 150 kg
     (re.compile(r"(?i)\bgr\.(?=\s*(?:H|Br?|T|Dm|D|L|Höhe|Breite|Tiefe|Länge|Durchmesser)\b)"), "max"),
@@ -56,6 +58,9 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)(?:(?<=\bde )large\b|\blarge(?=\s+de\s+\d))"), "larg "),
     (re.compile(r"(?i)\bhors[ -]tout"), "horstout "),
     (re.compile(r"(?i)(?<![^\W_])[dln]['’](?=[^\W\d_]{2})"), "  "),  # l'ouverture, d'épaules
+    # What is measured so is the whole, and no handle: W. handle to handle 12 in.
+    (re.compile(r"(?i)\bhandle to handle\b"), "across across   "),
+    (re.compile(r"(?i)\bhandle to spout\b"), "across across  "),
 )
 _EXTREME = re.compile(r"(\w{1,4})(max|min)")
 """A label and its qualifier in one word: Dmax, Hmin."""

@@ -24,6 +24,10 @@ from pipeline.collection.dimensions.tokens import (
 _NAMES = frozenset({"mm", "cm", "dm", "m", "g", "kg"})
 """Units that are written before numbers: inches never are, and "in" is a word."""
 _ANNOUNCING = frozenset({"en", "in", "misu"})
+_UNIT_NAMES = frozenset(
+    {"misu", "unità", "unit", "units", "einheit", "unité", "unidad", "unidade", "eenheid", "μοναδα"}
+)
+"""What stands before a colon and the unit of all that follows, as catalogues in columns print it."""
 _BETWEEN = frozenset({DOT, COLON, CLOSE, OPEN, DASH, WORD, DIMENSION, JOIN, COMMA, OTHER})
 _ENDS = frozenset({END, BREAK, COMMA, CLOSE, OPEN, JOIN, DASH, DOT, DIMENSION, COLON, OTHER})
 _FARTHEST = 12
@@ -87,7 +91,7 @@ def _is_ahead(tokens: list[Token], at: int, moved: dict[int, LexiconUnit]) -> bo
     back = at - 1
     while back >= 0 and tokens[back].type in (DOT, OPEN, DIMENSION, CLOSE):
         back -= 1
-    announced = tokens[at - 1].word in _ANNOUNCING or tokens[at - 2].word == "misu" if at else False
+    announced = tokens[at - 1].word in _ANNOUNCING or tokens[at - 2].word in _UNIT_NAMES if at else False
     if (
         back >= 0
         and tokens[back].type == NUMBER
@@ -119,7 +123,7 @@ def _announced(tokens: list[Token], at: int) -> int:
     """Return the first token of "en cm" and "MISU: cm"."""
     if at and tokens[at - 1].word in _ANNOUNCING:
         return at - 1
-    if at > 1 and tokens[at - 2].word == "misu":
+    if at > 1 and tokens[at - 2].word in _UNIT_NAMES:
         return at - 2
     return at
 

@@ -156,8 +156,10 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
     out: dict[str, list[Column]] = {}
     for name, able in found.items():
         most = max(len(column.filled) for _, column in able)
-        # An empty column tells nothing where another one tells something.
-        pairs = [pair for pair in able if pair[1].filled or not most]
+        # An empty column tells nothing where another one tells something; and no place, which all objects have.
+        pairs = [pair for pair in able if pair[1].filled or not (most or (name == "gallery" and pair[1].values))]
+        if not pairs:
+            continue
         out[name] = [
             column
             for _, column in sorted(

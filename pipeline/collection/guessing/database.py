@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 SAMPLED = 300
 """Rows of a table from which it is told what it holds."""
 
+TMS_OBJECTS = 108
+"""Number of the table of objects where TMS has rows for things of several tables."""
 _OBJECTS = frozenset(
     {
         *("object", "objects", "objekt", "objekte", "artwork", "artworks", "work", "works", "item", "items"),
@@ -169,7 +171,8 @@ def _references(table: DatabaseTable, other: DatabaseTable) -> Iterator[tuple[st
             if (column,) == table.key or column in table.refers:
                 continue
             words = plain(column).split()
-            if words == plain(key).split() and words != ["id"]:
+            ends = plain(key).split()
+            if words[-len(ends) :] == ends and ends != ["id"]:  # PrimaryUnitID -> UnitID
                 yield column, key
                 continue
             ended = words[-1:] == ["id"] or (len(words) == 1 and words[0].endswith("id"))
@@ -177,6 +180,8 @@ def _references(table: DatabaseTable, other: DatabaseTable) -> Iterator[tuple[st
                 stem = words[:-1] if words[-1] == "id" else [words[0][:-2]]
                 if stem and (same_stem("".join(stem), other.name) or same_stem(stem[-1], other.name)):
                     yield column, key
+    if table.shown.casefold().endswith("dimitemelemxrefs") and plain(other.name) in _OBJECTS and len(other.key) == 1:
+        yield from ((column, other.key[0]) for column in table.columns if column.casefold() == "id")
     # Without keys: a column of the same name that is the other's number.
     number = _named(other).get("object_number")
     if number is not None and number in table.columns and not _is_internal(number):
@@ -302,7 +307,7 @@ class _Joiner:
             self._take_place(self._objects, *direct)
             return
         for table, between in self._others():
-            own = next((c for c in table.columns if _field(c) == "gallery"), None)
+            own = _best(table.columns, "gallery")
             there = self._place_of(table)
             if own is None and there is None:
                 continue
@@ -331,7 +336,7 @@ class _Joiner:
             way = _refers(table, other)
             if way is None or other is self._objects:
                 continue
-            own = next((c for c in other.columns if _field(c) == "gallery"), None)
+            own = _best(other.columns, "gallery")
             if of_table(other.name, "gallery"):
                 own = self._called(other) or own or self._name_of(other)
             if own is not None:
@@ -411,6 +416,9 @@ class _Joiner:
                 return
             condition = old.c[back[0]] == new.c[back[1]]
         conditions = [condition]
+        of_all = next((name for name in table.columns if name.casefold() == "tableid"), None)
+        if of_all is not None and way is not None and way[0].casefold() == "id":
+            conditions.append(new.c[of_all] == TMS_OBJECTS)
         if flag is not None:
             said = next((c for c in self._columns(table) if c.name == flag), Column(flag)).distinct
             conditions.append(new.c[flag].is_(true()) if set(said) <= {"true", "false"} and said else new.c[flag] == 1)
@@ -436,6 +444,12 @@ def _field(name: str) -> str | None:
     what = named(name)
     # The number of a place is not its name.
     return None if what is None or plain(name).split()[-1:] == ["id"] else what.field
+
+
+def _best(columns: Sequence[str], field: str) -> str | None:
+    """Return the column whose name says a field best: the whole string of a place before its site."""
+    able = [(what.rank, name) for name in columns if _field(name) == field and (what := named(name)) is not None]
+    return min(able)[1] if able else None
 
 
 def _known(column: Column, tells: Callable[[str], object]) -> float:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pipeline.collection.guessing.columns import Column, candidates
+from pipeline.collection.guessing.columns import NUMBER, Column, candidates
 from pipeline.collection.guessing.names import plain
 from pipeline.collection.sources.base import LongForm
-from pipeline.collection.sources.measurement_terms import part_of
+from pipeline.collection.sources.measurement_terms import kind_of, part_of, unit_of
+
+_SEPARATORS = ("$", "|", ";", "\n")
+"""What exports put between several values of one field in a cell."""
 
 VALUES = frozenset(
     {
@@ -23,7 +26,7 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
     """Return how a table in long form is read; None for one with a row for each object.
 
     It is one where a column names kinds of measurements, at least two of them, beside a column of numbers, while object
-    numbers repeat or are left empty.
+    numbers repeat or are left empty; or where one cell names several kinds, and the next their values.
 
     Parameters
     ----------
@@ -34,6 +37,9 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
     -------
     LongForm or None
     """
+    within = _within(columns)
+    if within is not None:
+        return within
     types = [c for c in columns if c.kinds >= 0.6 and len(c.distinct) > 1]
     numbers = [c for c in candidates(columns).get("object_number", ()) if c.filled] or [
         c for c in columns if c.filled and c not in types and not c.units
@@ -61,6 +67,35 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
         unit=None if unit is None else unit.name,
         part=None if part is None else part.name,
     )
+
+
+def _within(columns: Sequence[Column]) -> LongForm | None:
+    """Return how cells of several measurements are read: height$width in one column, 120$97.5 in another."""
+    for separator in _SEPARATORS:
+        apart = [(c, [text.split(separator) for text in c.values[:200]]) for c in columns]
+        apart = [(c, pieces) for c, pieces in apart if any(len(one) > 1 for one in pieces)]
+        found: dict[str, Column] = {}
+        for column, pieces in apart:
+            some = [piece.strip() for one in pieces for piece in one if piece.strip()]
+            for name, tells in (("type", kind_of), ("unit", unit_of), ("value", _number)):
+                if name not in found and sum(tells(text) is not None for text in some) >= 0.6 * len(some):
+                    found[name] = column
+                    break
+        objects = [c for c in candidates(columns).get("object_number", ()) if c.filled]
+        if {"type", "value"} <= found.keys() and objects:
+            unit = found.get("unit")
+            return LongForm(
+                object=objects[0].name,
+                type=found["type"].name,
+                value=found["value"].name,
+                unit=None if unit is None else unit.name,
+                separator=separator,
+            )
+    return None
+
+
+def _number(text: str) -> str | None:
+    return text if NUMBER.fullmatch(text) else None
 
 
 def _parts(column: Column) -> float:

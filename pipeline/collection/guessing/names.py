@@ -65,6 +65,17 @@ _FORMER = frozenset(
 """Words that say that something else is meant than the object's own number and place now."""
 
 
+_ABOUT = frozenset(
+    {"measurement", "measurements", "measure", "dimension", "dimensions", "size", "sizes", "maß", "misura"}
+)
+"""Words before the name of a side that say only that it is one."""
+
+
+def is_side(name: str) -> bool:
+    """Whether the name of a column begins as those of sizes do: "measurement_girth"."""
+    return bool(_ABOUT.intersection(plain(name).split()[:1]))
+
+
 @dataclass(frozen=True, slots=True)
 class ColumnMeaning:
     """What the name of a column says.
@@ -243,9 +254,17 @@ def _forms(name: str) -> Iterator[str]:
     if len(halves) > 1:
         yield from map(plain, reversed(halves) if between else halves)
     # A path of names: what its last one says, "_currentLocation__onDisplay", "location.onView".
-    last = re.split(r"__|\.(?=[^\W\d_]{3})", name.strip("_ ."))[-1]
-    if last != name:
-        yield plain(last)
+    path = re.split(r"__|\.(?=[^\W\d_]{3}|[^\W\d_]+_)", name.strip("_ ."))
+    if path[-1] != name:
+        yield plain(path[-1])
+    # "measurement_height", "ca_objects.dimensions.dimensions_height"
+    words = plain(unit_in(path[-1])[0]).split()
+    about = next((at for at, word in enumerate(words) if word not in _ABOUT), 0)
+    if about:
+        yield " ".join(words[about:])
+    # "ca_storage_locations.hierarchy.preferred_labels.name": of no other table of words is it the first.
+    if len(path) > 2:
+        yield plain(path[0])
     # What stands in brackets may be a language.
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:

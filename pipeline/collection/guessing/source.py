@@ -253,10 +253,13 @@ def objects_of(name: str, source: dict[str, Any], columns: list[Column], told: G
     long = long_form_of(columns)
     if long is None:
         return columns
-    source["long"] = long.model_dump(exclude_none=True)
+    source["long"] = long.model_dump(exclude_none=True, exclude_defaults=True)
     told.sure.append(
-        f"each measurement has a row of its own: {long.type!r} says which, {long.value!r} how much; they are gathered "
-        f"by {long.object!r}"
+        f"cells hold several measurements, parted by {long.separator!r}: {long.type!r} says which, {long.value!r} how "
+        "much"
+        if long.separator
+        else f"each measurement has a row of its own: {long.type!r} says which, {long.value!r} how much; they are "
+        f"gathered by {long.object!r}"
     )
     if long.unit is None:
         told.doubts.append(f"no column tells the unit of {long.value!r}: its numbers are refused where they name none")

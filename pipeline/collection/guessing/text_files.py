@@ -7,11 +7,14 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import islice
 from unicodedata import category
 
+from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
 from pipeline.collection.sources.heads import joined_heads
+from pipeline.tables import table
 
 LOOKED_AT = 40
 """Rows at the beginning among which the header is looked for."""
@@ -19,6 +22,9 @@ LOOKED_AT = 40
 _DELIMITERS = ";,\t|"
 _SINGLE = ("cp1252", "mac-roman", "cp1250", "cp850")
 _DOUBLE = ("shift-jis", "euc-jp")
+_SPOKEN = ("cp1250", "iso8859-2", "cp1251", "cp1253", "cp1254", "gb18030", "euc-kr")
+"""Encodings of languages whose letters are others elsewhere, told by known words alone."""
+_LETTERS = re.compile(r"[^\W\d_]{2,}")
 # Letters of the eight languages beyond ASCII, and the signs that texts of museums have.
 _COMMON = frozenset("äöüßàâæçéèêëîïôœùûÿìíòóúñáãõășțşţłøåÄÖÜÀÂÆÇÉÈÊËÎÏÔŒÙÛÌÍÒÓÚÑÁÃÕĂȘȚŞŢŁØÅ")
 _SIGNS = frozenset("°ºª«»–—’‘“”„…©®²³½¼¾×±€£§·•¿¡\u00a0´")
@@ -28,7 +34,8 @@ def encoding_of(head: bytes) -> str:
     """Return the encoding of a text by its first bytes.
 
     What is no Unicode is read in each of the usual single-byte encodings; the one counts in which the most bytes
-    beyond ASCII are letters of European languages in the midst of words.
+    beyond ASCII are letters of European languages in the midst of words, unless more of those words are known in an
+    encoding of Central Europe, of Cyrillic, Greek or Turkish.
 
     Parameters
     ----------
@@ -49,10 +56,27 @@ def encoding_of(head: bytes) -> str:
     except UnicodeDecodeError as problem:
         if problem.start < len(head) - 4:
             japanese = [name for name in _DOUBLE if _kana(head, name) > 0.1]
-            if japanese:
-                return max(japanese, key=lambda name: _kana(head, name))
-            return max(_SINGLE, key=lambda name: _likeness(head, name))
+            likely = (
+                max(japanese, key=lambda name: _kana(head, name))
+                if japanese
+                else max(_SINGLE, key=lambda name: _likeness(head, name))
+            )
+            return max((likely, *_SPOKEN), key=lambda name: _known_words(head, name))
     return "utf-8"
+
+
+def _known_words(head: bytes, encoding: str) -> int:
+    """Return how many of the words with letters beyond ASCII are known, of columns, of dimensions or of things."""
+    words = _LETTERS.findall(head.decode(encoding, "replace").casefold())
+    return sum(not word.isascii() and word in _vocabulary() for word in words)
+
+
+@cache
+def _vocabulary() -> frozenset[str]:
+    texts = (name for row in table("column_names") for name in row["names"].split("|"))
+    things = (word for row in table("rules") for word in row["words"].split("|"))
+    words = {word for text in (*texts, *things) for word in _LETTERS.findall(text.casefold())}
+    return frozenset(word for word in words | meanings().keys() if not word.isascii())
 
 
 def _likeness(head: bytes, encoding: str) -> float:

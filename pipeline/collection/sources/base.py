@@ -36,6 +36,12 @@ class LongForm(BaseModel):
     value: Name = Field(description="The column with the numbers.")
     unit: Name | None = Field(default=None, description="The column with their units.")
     part: Name | None = Field(default=None, description="The column that says of which part, such as whole or frame.")
+    separator: str = Field(
+        default="",
+        max_length=3,
+        description="What parts several measurements in one cell, height$width beside 120$97.5, as exports of Axiell "
+        'do; "" where each has a row of its own.',
+    )
 
 
 class SourceSettings(BaseModel):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import LongForm
@@ -15,6 +16,18 @@ COLUMNS = (*MEASURED, "other_measurements")
 """What takes the place of the columns of type, value, unit and part."""
 
 _Fault = tuple[str, str]
+_MOST = 200
+"""Measurements of one cell."""
+
+
+class _Said(NamedTuple):
+    """A measurement in the words of its row."""
+
+    kind: str
+    value: str
+    unit: str
+    part: str
+    fault: _Fault | None
 
 
 @dataclass
@@ -95,7 +108,8 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
             if not found.cells[place] and row.cells[at]:
                 found.cells[place] = row.cells[at]
                 found.faults.pop(place, None)
-        _measure(found, row, type_at, value_at, unit_at, part_at)
+        for said in _apart(row, (type_at, value_at, unit_at, part_at), long.separator):
+            _measure(found, said)
     width = len(kept)
     last = 0
     for found in objects.values():
@@ -107,12 +121,27 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
         yield Row(place, row.line, row.cells + [""] * (width + len(COLUMNS) - len(row.cells)), row.fault)
 
 
-def _measure(found: _Gathered, row: Row, type_at: int, value_at: int, unit_at: int | None, part_at: int | None) -> None:
-    said = row.cells[type_at].strip()
-    for at in (type_at, value_at):
-        if at in row.faults:
-            found.measured.refuse(kind_of(said) or "other_measurements", *row.faults[at])
-            return
-    unit = "" if unit_at is None else row.cells[unit_at]
-    part = "" if part_at is None else row.cells[part_at]
-    found.measured.add(said, row.cells[value_at], unit, part)
+def _apart(row: Row, places: tuple[int, int, int | None, int | None], separator: str) -> Iterator[_Said]:
+    """Yield each measurement of a row; one cell says several in the order of the others, its last for all behind it."""
+    fault = next((row.faults[at] for at in places[:2] if at in row.faults), None)
+    cells = ["" if at is None else row.cells[at] for at in places]
+    if not separator or fault is not None:
+        kind, value, unit, part = cells
+        yield _Said(kind, value, unit, part, fault)
+        return
+    pieces = [[piece.strip() for piece in cell.split(separator, _MOST)] for cell in cells]
+    uneven = len(pieces[0]) != len(pieces[1])
+    why = (
+        f"{len(pieces[0])} kinds of measurement stand beside {len(pieces[1])} values",
+        "give each kind its value, or leave the mapping's [source.long] separator out",
+    )
+    for at, kind in enumerate(pieces[0]):
+        value, unit, part = (one[min(at, len(one) - 1)] for one in pieces[1:])
+        yield _Said(kind, value, unit, part, why if uneven else None)
+
+
+def _measure(found: _Gathered, said: _Said) -> None:
+    if said.fault is not None:
+        found.measured.refuse(kind_of(said.kind) or "other_measurements", *said.fault)
+        return
+    found.measured.add(said.kind.strip(), said.value, said.unit, said.part)

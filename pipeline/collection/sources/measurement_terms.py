@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from unicodedata import normalize
 
+from pipeline.collection.dimensions.lexicon import ALIKE, meanings, unit_words
+
 
 def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
@@ -172,7 +174,13 @@ def kind_of(text: str) -> str | None:
     if whole in KIND_OF:
         return KIND_OF[whole]
     words = [word for word in map(plain_word, whole.split()) if word and word not in _SHOWN and word not in "xyz"]
-    return KIND_OF.get(words[0]) if len(words) == 1 else None
+    return KIND_OF.get(words[0]) or _spoken(words[0]) if len(words) == 1 else None
+
+
+def _spoken(word: str) -> str | None:
+    """Return the kind that a word names in dimension texts of any language; a letter may name anything."""
+    meant, kind = meanings().get(word.translate(ALIKE).casefold(), ("", ""))
+    return kind if meant == "dimension" and len(word) > 1 and kind in KINDS else None
 
 
 def part_of(text: str) -> str | None:
@@ -206,4 +214,7 @@ def unit_of(text: str) -> str | None:
         A key of LENGTHS or MASSES.
     """
     whole = normalize("NFC", text).casefold().partition("(")[0].strip(" .:;,[])")
-    return UNITS.get(whole) or UNITS.get(whole.rstrip("s")) or UNITS.get(whole.removesuffix("i") + "o")
+    known = UNITS.get(whole) or UNITS.get(whole.rstrip("s")) or UNITS.get(whole.removesuffix("i") + "o")
+    if known is None and (unit := unit_words().get(whole.translate(ALIKE))) is not None and unit.name in UNITS:
+        return unit.name
+    return known
