@@ -132,13 +132,18 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
     table = values.reshape(-1, width) if even else values[:, None]
     timed = even and _timed(table, columns, head, lines, start, form)
     announced = head.count or 0
-    one = width == 1 or (not timed and (announced == values.size or (not whole and announced > len(table))))
+    one = width == 1 or (
+        not columns and not timed and (announced == values.size or (not whole and announced > len(table)))
+    )
     if even and not one and (timed or columns or head.count == len(table)):
         block.data = table
         if timed:
             block.times, block.data, block.columns = table[:, 0], table[:, 1:], columns[1:]
     elif one:
         block.data, block.columns = values[:, None], columns if width == 1 else ()
+    elif announced:
+        wrong = f"announces {announced} samples, and {values.size} numbers are there, {width} a row"
+        raise lines.error(head.at["count"], wrong, "it is cut off or damaged: fetch it again")
     else:
         wrong = f"neither names of columns nor a count say whether {width} numbers a row are components or one series"
         raise lines.error(start, wrong, "name the columns: kouros motions convert")
@@ -211,7 +216,8 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     for number in chosen:
         column = block.columns[number] if block.columns else Column("", "", "")
         unit = column.unit if column.kind else head.unit
-        said = column.orientation if width > 1 and column.name else head.orientation
+        named = column.name and (width > 1 or labels.points(column.orientation))
+        said = column.orientation if named else head.orientation
         factor = trace_headers.FACTORS.get(unit)
         data = block.data[:, number].copy()
         peak = head.peak[0] if head.peak and width == 1 and factor else None

@@ -64,7 +64,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     if peak:
         digit = 0.01 * 10.0 ** -len(peak.partition(".")[2])
         trace_headers.said_peak(lines, at, 0.01 * _number(lines, at, peak), digit, data, trace_headers.FACTORS[unit])
-    channel, direction, how = _channel(lines, keys, dt)
+    channel, direction, how = _channel(keys, dt)
     # A code of two letters in ESM; in the files of AFAD the name of the place.
     place = keys.get("LOCATION", (0, ""))[1]
     processed, assumed = _processed(keys)
@@ -117,7 +117,7 @@ def _start(lines: Lines, keys: Keys) -> Any:
     return None if date is None else trace_headers.start_time(lines, at, *(float(date[part]) for part in "ymdHMS"))
 
 
-def _channel(lines: Lines, keys: Keys, dt: float) -> tuple[str, trace_headers.Orientation, str]:
+def _channel(keys: Keys, dt: float) -> tuple[str, trace_headers.Orientation, str]:
     """Return the channel's code, its orientation, and by what it is known."""
     if "STREAM" in keys or "COMPONENT" not in keys:
         code = keys.said("STREAM")[1]

@@ -36,7 +36,8 @@ _RATE = _label(
 )
 _COUNT = _label(
     r"(?:number|no\.?) of (?:data|points|samples|values)|npts|ndata|(?:num_?)?samples|sample[ _]count|"
-    r"n.{1,2}mero de (?:muestras|datos|puntos)|numero (?:di )?(?:dati|campioni|punti)|nombre de points|anzahl (?:der )?werte",
+    r"n.{1,2}mero de (?:muestras|datos|puntos)|numero (?:di )?(?:dati|campioni|punti)|"
+    r"nombre de points|anzahl (?:der )?werte",
     r"(\d{1,9})(?![.\d])",
 )
 _UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit", r"(\S.*)")
@@ -169,7 +170,7 @@ class Head:
 def turned(word: str) -> Orientation:
     """What a word says of an orientation, a channel's code of SEED included; else the word itself."""
     said = trace_headers.component(word)[0]
-    if _points(said):
+    if points(said):
         return said
     coded = trace_headers.seed_orientation(word.upper())
     return said if coded is None else coded
@@ -222,12 +223,13 @@ def columns_of(text: str, width: int, separator: str | None) -> tuple[Column, ..
         kind, unit = ("", word.lower()) if is_time else unit_of(word)
         columns.append(Column(name, kind, unit, is_time))
     # A sentence may have as many words as a row has numbers: a time, units or directions tell names from it.
-    pointing = sum(_points(one.orientation) for one in columns)
+    pointing = sum(points(one.orientation) for one in columns)
     named = columns[0].is_time or any(one.kind for one in columns) or 2 * pointing > len(columns)
     return tuple(columns) if named and not any(":" in one.name or "=" in one.name for one in columns) else ()
 
 
-def _points(said: Orientation) -> bool:
+def points(said: Orientation) -> bool:
+    """Whether what was said is an orientation, and no word."""
     return isinstance(said, float) or said in {"up", "down"}
 
 

@@ -1,8 +1,8 @@
 """PEER AT2: one component of acceleration in g, as the NGA databases and the older PEER database give it.
 
 Four lines of text, the last with the number of samples and the step ("NPTS=  7818, DT= .0050 SEC", with or without its
-comma, or "7818 .0050 NPTS, DT"), then numbers.  The orientation is the last item of the second line.  The header does not say whether a record is
-processed: the manifest must.
+comma, or "7818 .0050 NPTS, DT"), then numbers.  The orientation is the last item of the second line.  The header does
+not say whether a record is processed: the manifest must.
 
 source : header of the files of the PEER NGA-West2 database
 """

@@ -1,10 +1,10 @@
 """USGS SMC: one component of acceleration in cm/s2, uncorrected or corrected.
 
 Eleven lines of text, 48 integers, 50 reals, comments, then eight fields of ten characters a line, or five of fourteen.
-A file of unknown kind, as programs make them of other formats, says neither its unit nor whether it is corrected.  A file without a
-sampling rate holds pairs of time and acceleration as they were digitised from film, at irregular times; they are
-resampled linearly, which the trace says.  Files may end in a stale record or in NUL bytes, left by the system that
-wrote them; the count in the header says where the data end.
+A file of unknown kind, as programs make them of other formats, says neither its unit nor whether it is corrected.  A
+file without a sampling rate holds pairs of time and acceleration as they were digitised from film, at irregular times;
+they are resampled linearly, which the trace says.  Files may end in a stale record or in NUL bytes, left by the system
+that wrote them; the count in the header says where the data end.
 
 source : USGS National Strong-Motion Program, SMC-format data files, https://nsmp.wr.usgs.gov/smcfmt.html
 """
