@@ -51,6 +51,33 @@ def is_format(source: Source) -> bool:
     return not any(import_module(f"{__package__}.{name}").is_format(source) for name in _OTHERS)
 
 
+def series(lines: Lines) -> tuple[Array, int, int] | None:
+    """Return all numbers of a file in a row, whatever head it has.
+
+    Parameters
+    ----------
+    lines : Lines
+        Of the file.
+
+    Returns
+    -------
+    (array, int, int) or None
+        The numbers, the line that they begin in, from 0, and how many a line has, the last of which may have fewer;
+        None for a file without rows of numbers.
+
+    Raises
+    ------
+    FormatError
+        At a row that holds something else, or more or fewer numbers than the first.
+    """
+    top = _top(lines)
+    if top is None:
+        return None
+    form = _form(lines.text(top))
+    width = len(_cells(lines, top, form))
+    return _values(lines, top, form, width)[0], top, width
+
+
 class _Block:
     """Rows of numbers, before any of them is given a meaning.
 
