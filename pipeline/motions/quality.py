@@ -59,6 +59,9 @@ other.  A shaking that is sampled so coarsely goes back and forth with every sam
 SMOOTH = 0.35
 """Most share of the range that the steps beside an overflow take (judgement)."""
 
+RARE = 0.1
+"""Most share of all steps that overflow (judgement)."""
+
 DROP = 0.2
 """Least share of the range by which a channel falls to a level at once, and comes back, that is held for DROP_RUN
 samples to the last digit: what is beyond a limit was left out."""
@@ -72,7 +75,8 @@ def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
     Looked for are tops that are flat to within a digitiser's count and have sharp edges: three samples in a row, or
     several pairs at uneven distances (a sine that is sampled in step with its period repeats its pairs evenly).  A
     single sample at the limit cannot be told from a crest.  A limit that a filter smoothed is no longer flat: levels
-    that are held are looked for, see `plateaus.held`.  What overflowed, or was left out beyond a limit, jumps.  Give the samples as the file has them, with their response.
+    that are held are looked for, see `plateaus.held`.  What overflowed, or was left out beyond a limit, jumps.  Give
+    the samples as the file has them, with their response.
 
     Parameters
     ----------
@@ -173,8 +177,13 @@ def _jumped(row: Array) -> tuple[int, str] | None:
     if size == 0.0 or steps.size < 3:
         return None
     beside = np.abs(np.concatenate([[0.0], steps, [0.0]]))
-    over = np.flatnonzero((beside[1:-1] >= OVERFLOW * size) & (np.maximum(beside[:-2], beside[2:]) <= SMOOTH * size))
-    if over.size >= 2 and np.ptp(np.sign(steps[over])) > 0.0:
+    smooth = np.maximum(beside[:-2], beside[2:]) <= SMOOTH * size
+    # A channel that rises to its limit goes on rising from the other one.
+    signs = np.sign(np.concatenate([[0.0], steps, [0.0]]))
+    against = (signs[:-2] * signs[1:-1] <= 0.0) & (signs[2:] * signs[1:-1] <= 0.0)
+    over = np.flatnonzero((beside[1:-1] >= OVERFLOW * size) & smooth & against)
+    # A tone of a quarter of the sampling rate does so with every other sample.
+    if 2 <= over.size <= RARE * steps.size and np.ptp(np.sign(steps[over])) > 0.0:
         return int(over[0]) + 1, f"is clipped: it goes from one limit to the other within a sample, {over.size} times"
     edges = np.diff(np.concatenate([[False], steps == 0.0, [False]]).astype(np.int8))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
