@@ -177,13 +177,13 @@ def _jumped(row: Array) -> tuple[int, str] | None:
     if size == 0.0 or steps.size < 3:
         return None
     beside = np.abs(np.concatenate([[0.0], steps, [0.0]]))
-    smooth = np.maximum(beside[:-2], beside[2:]) <= SMOOTH * size
+    through = (beside[1:-1] >= OVERFLOW * size) & (np.maximum(beside[:-2], beside[2:]) <= SMOOTH * size)
     # A channel that rises to its limit goes on rising from the other one.
     signs = np.sign(np.concatenate([[0.0], steps, [0.0]]))
-    against = (signs[:-2] * signs[1:-1] <= 0.0) & (signs[2:] * signs[1:-1] <= 0.0)
-    over = np.flatnonzero((beside[1:-1] >= OVERFLOW * size) & smooth & against)
-    # A tone of a quarter of the sampling rate does so with every other sample.
-    if 2 <= over.size <= RARE * steps.size and np.ptp(np.sign(steps[over])) > 0.0:
+    over = np.flatnonzero(through & (signs[:-2] * signs[1:-1] <= 0.0) & (signs[2:] * signs[1:-1] <= 0.0))
+    # A tone of a quarter of the sampling rate goes through its range with every other sample.
+    rare = np.count_nonzero(through) <= RARE * steps.size
+    if rare and over.size >= 2 and np.ptp(np.sign(steps[over])) > 0.0:
         return int(over[0]) + 1, f"is clipped: it goes from one limit to the other within a sample, {over.size} times"
     edges = np.diff(np.concatenate([[False], steps == 0.0, [False]]).astype(np.int8))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
