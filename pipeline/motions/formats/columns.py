@@ -97,7 +97,8 @@ class _Block:
 
     def __init__(self, head: Head, data: Array, columns: tuple[Column, ...]) -> None:
         self.head, self.data, self.columns = head, data, columns
-        self.step, self.times = head.step, None
+        self.step = head.step
+        self.times: Array | None = None
 
 
 def _top(lines: Lines) -> int | None:
