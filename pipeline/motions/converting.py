@@ -12,6 +12,7 @@ import numpy as np
 
 from pipeline.motions.errors import refusal
 from pipeline.motions.formats import blocks, irregular, record_text, trace_headers
+from pipeline.motions.formats import columns as text_columns
 from pipeline.motions.formats.record_text import Lines
 from pipeline.motions.formats.trace_headers import FACTORS, Orientation
 from pipeline.quantities import Array
@@ -74,7 +75,7 @@ def convert(
         or a decimal comma where commas do not part the columns.
     columns : sequence of str
         What each column is: "time" (s) or "time_ms", "ns", "ew", "ud" and their like, any other name for a component
-        whose orientation is given, "-" for what is left out.
+        whose orientation is given, "-" for what is left out.  One alone of rows of several numbers: they are read on.
     unit : str
         Of all components; one of `formats.trace_headers.FACTORS`.
     out : Path
@@ -156,8 +157,13 @@ def _orientations(file: Path, names: list[str], given: Sequence[str]) -> list[fl
 
 
 def _numbers(lines: Lines, columns: int) -> tuple[Array, int, list[str]]:
+    """The rows as a table, or where one column is named and a row has several numbers, all of them as one series."""
     found = ((i, how) for i in range(min(len(lines), _MOST_HEAD)) if (how := _form(lines.text(i), columns)))
     top, form = next(found, (0, None))
+    if form is None and columns == 1 and (wrapped := text_columns.series(lines)):
+        values, top, width = wrapped
+        told = [f"{top} lines before the first row of numbers were passed over"] if top else []
+        return values[:, None], top, [*told, f"the {width} numbers of a row are read on as one series"]
     if form is None:
         wrong = f"none of the first {min(len(lines), _MOST_HEAD)} lines has {columns} numbers"
         raise lines.error(0, wrong, "name every column in --columns, with - for what is not used")
@@ -165,14 +171,14 @@ def _numbers(lines: Lines, columns: int) -> tuple[Array, int, list[str]]:
     while end > top and not lines.lines[end - 1].strip(b" \t\0\x1a"):
         end -= 1
     separator, comma = form
-    values = array("d")
+    numbers = array("d")
     for index in range(top, end):
         cells = _cells(lines.text(index), separator, comma)
         if len(cells) != columns or not all(_NUMBER.match(cell) for cell in cells):
             raise lines.error(index, f"expected {columns} numbers, found {record_text.shown(lines.text(index))}")
-        values.extend(float(cell.translate(_EXPONENT)) for cell in cells)
+        numbers.extend(float(cell.translate(_EXPONENT)) for cell in cells)
     blocks.samples(lines, top, end - top)
-    table = np.array(values).reshape(-1, columns)
+    table = np.array(numbers).reshape(-1, columns)
     if not np.isfinite(table).all():
         bad = top + int(np.flatnonzero(~np.isfinite(table).all(axis=1))[0])
         raise lines.error(bad, "holds a number beyond all bounds")

@@ -57,11 +57,14 @@ class Earthquake:
         When it rises above the noise and falls back, to a second.
     peak : float
         In the unit of the samples, between 1 and 20 Hz.
+    strongest : obspy.UTCDateTime
+        The second of the peak.
     """
 
     begins: Any
     ends: Any
     peak: float
+    strongest: Any
 
 
 def earthquakes(pieces: Sequence[Piece], start: Any = None, end: Any = None) -> list[Earthquake]:
@@ -121,7 +124,8 @@ def _in_piece(piece: Piece, first: Any, last: Any) -> list[Earthquake]:
             spans[-1][1] = int(b)
         else:
             spans.append([int(a), int(b)])
-    return [Earthquake(first + a, first + b + 1, float(peaks[a : b + 1].max())) for a, b in spans if b - a + 1 >= LEAST]
+    found = [(a, b, a + int(np.argmax(peaks[a : b + 1]))) for a, b in spans if b - a + 1 >= LEAST]
+    return [Earthquake(first + a, first + b + 1, float(peaks[at]), first + at) for a, b, at in found]
 
 
 def _seconds(piece: Piece, start: Any, end: Any) -> tuple[Array, Array]:
@@ -166,7 +170,7 @@ def listed(found: Sequence[Earthquake], factor: float = 0.0) -> str:
 
 
 def window_of(channels: Sequence[Sequence[Piece]], origin: Any) -> tuple[float, float]:
-    """Return the window of the earthquake that arrives first after an origin time.
+    """Return the window of the earthquake that arrives first after an origin time, or is stronger after it than before.
 
     Parameters
     ----------
@@ -187,7 +191,15 @@ def window_of(channels: Sequence[Sequence[Piece]], origin: Any) -> tuple[float, 
     """
     pieces = channels[0]
     near = earthquakes(pieces, origin - 2.0 * TRAVEL, origin + 4.0 * TRAVEL)
-    chosen = next((one for one in near if -5.0 <= one.begins - origin <= TRAVEL), None)
+    # Shaking that a foreshock began is the earthquake's, where its peak comes after the origin.
+    chosen = next(
+        (
+            one
+            for one in near
+            if one.begins - origin <= TRAVEL and (one.begins >= origin - 5.0 or one.strongest >= origin)
+        ),
+        None,
+    )
     if chosen is None:
         # A triggered record that is shaken from end to end has no noise to rise above.
         short = [p for p in pieces if -60.0 <= p.start - origin <= TRAVEL and p.end - p.start < BLOCK]
@@ -196,7 +208,7 @@ def window_of(channels: Sequence[Sequence[Piece]], origin: Any) -> tuple[float, 
                 f"origin_time: no earthquake is found within {TRAVEL:g} s after {origin}; give window_s as well, "
                 f"or the time of one of these: {listed(earthquakes(pieces))}"
             )
-        chosen = Earthquake(short[0].start, short[0].end, 0.0)
+        chosen = Earthquake(short[0].start, short[0].end, 0.0, short[0].start)
     start, end = chosen.begins - BEFORE, chosen.ends + AFTER
     for channel in channels:
         for piece in channel:

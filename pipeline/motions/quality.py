@@ -52,13 +52,31 @@ START_SHARE = 0.5
 those records; begun anywhere between 6 and 95 % of their Arias intensity they have 0.64 and more."""
 
 
+OVERFLOW = 0.85
+"""Share of a channel's range that it goes through within one sample where a digitiser overflows: from one limit to the
+other.  A shaking that is sampled so coarsely goes back and forth with every sample, see SMOOTH."""
+
+SMOOTH = 0.35
+"""Most share of the range that the steps beside an overflow take (judgement)."""
+
+RARE = 0.1
+"""Most share of all steps that overflow (judgement)."""
+
+DROP = 0.2
+"""Least share of the range by which a channel falls to a level at once, and comes back, that is held for DROP_RUN
+samples to the last digit: what is beyond a limit was left out."""
+
+DROP_RUN = 3
+
+
 def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
     """Say which channel was cut off at the limit of its instrument, and where; None where none was.
 
     Looked for are tops that are flat to within a digitiser's count and have sharp edges: three samples in a row, or
     several pairs at uneven distances (a sine that is sampled in step with its period repeats its pairs evenly).  A
     single sample at the limit cannot be told from a crest.  A limit that a filter smoothed is no longer flat: levels
-    that are held are looked for, see `plateaus.held`.  Give the samples as the file has them, with their response.
+    that are held are looked for, see `plateaus.held`.  What overflowed, or was left out beyond a limit, jumps.  Give
+    the samples as the file has them, with their response.
 
     Parameters
     ----------
@@ -95,6 +113,9 @@ def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
                 f"{channel} is clipped: it holds {plateau.level:.6g} for {plateau.samples} samples and more from "
                 f"sample {plateau.start} ({plateau.start * dt:.6g} s), and falls away on both sides"
             )
+        if (jump := _jumped(row)) is not None:
+            at, how = jump
+            return f"{channel} {how} from sample {at} ({at * dt:.6g} s)"
     return None
 
 
@@ -147,6 +168,32 @@ def cut_off(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
                 f"({first * dt:.6g} to {last * dt:.6g} s), more than {share:.0%}"
             )
     return said
+
+
+def _jumped(row: Array) -> tuple[int, str] | None:
+    """The first sample behind a jump that no shaking makes, and what it is; None for none."""
+    steps = np.diff(row)
+    size = float(np.ptp(row))
+    if size == 0.0 or steps.size < 3:
+        return None
+    beside = np.abs(np.concatenate([[0.0], steps, [0.0]]))
+    through = (beside[1:-1] >= OVERFLOW * size) & (np.maximum(beside[:-2], beside[2:]) <= SMOOTH * size)
+    # A channel that rises to its limit goes on rising from the other one.
+    signs = np.sign(np.concatenate([[0.0], steps, [0.0]]))
+    over = np.flatnonzero(through & (signs[:-2] * signs[1:-1] <= 0.0) & (signs[2:] * signs[1:-1] <= 0.0))
+    # A tone of a quarter of the sampling rate goes through its range with every other sample.
+    rare = np.count_nonzero(through) <= RARE * steps.size
+    if rare and over.size >= 2 and np.ptp(np.sign(steps[over])) > 0.0:
+        return int(over[0]) + 1, f"is clipped: it goes from one limit to the other within a sample, {over.size} times"
+    edges = np.diff(np.concatenate([[False], steps == 0.0, [False]]).astype(np.int8))
+    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    # The steps into a run of equal samples and out of it; at either end of the record there is none.
+    into, out = beside[starts], beside[ends + 1]
+    dropped = np.flatnonzero((ends - starts + 1 >= DROP_RUN) & (np.minimum(into, out) >= DROP * size))
+    if dropped.size:
+        wrong = "drops out, or is clipped: amid its shaking it falls to one level at once and comes back"
+        return int(starts[dropped[0]]), f"{wrong}, {dropped.size} times"
+    return None
 
 
 def _flat_tops(row: Array) -> tuple[Array, Array]:

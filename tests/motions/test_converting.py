@@ -123,3 +123,13 @@ def test_a_dead_column_is_refused(tmp_path):
     path.write_text("".join(f"{0.01 * i:.2f},{i % 7},0\n" for i in range(50)))
     with pytest.raises(MotionError, match="'ew': is dead"):
         convert(path, ["time", "ns", "ew"], "gal", tmp_path / "out")
+
+
+def test_one_component_of_several_numbers_a_row_is_read_on(tmp_path):
+    """Seven numbers a row, the last row shorter, under a head that says nothing."""
+    rows = [" ".join(f"{value:.4f}" for value in NS[i : i + 7]) for i in range(0, len(NS), 7)]
+    (tmp_path / "a.txt").write_text("\n".join(["A station", *rows]) + "\n")
+    done = convert(tmp_path / "a.txt", ["ns"], "gal", tmp_path / "out", dt=0.01)
+    (trace,) = obspy.read(str(done.file))
+    assert trace.data.tolist() == [float(f"{value:.4f}") for value in NS]
+    assert "the 7 numbers of a row are read on as one series" in done.steps

@@ -56,6 +56,25 @@ def test_good_records_are_neither_clipped_nor_cut_off(record, name):
     assert cut_off(data, dt, CHANNELS) is None
 
 
+def overflowed(row, limit):
+    """As a counter does that has no more digits: beyond the limit it goes on at the other one."""
+    return (row + limit) % (2.0 * limit) - limit
+
+
+def left_out(row, limit):
+    return np.where(np.abs(row) > limit, 0.0, row)
+
+
+@pytest.mark.parametrize("name", ["weitchpec", "coalinga", "ridgecrest", "meloland"])
+@pytest.mark.parametrize(("spoil", "said"), [(overflowed, "from one limit to the other"), (left_out, "drops out")])
+def test_what_jumps_at_its_limit_is_told(record, name, spoil, said):
+    data, dt = record(name)
+    row = data[0] - np.median(data[0])
+    told = clipped(spoil(row, 0.4 * np.abs(row).max())[None], dt, CHANNELS[:1])
+    assert told is not None
+    assert said in told or "is clipped" in told
+
+
 @pytest.mark.parametrize("name", RECORDS)
 @pytest.mark.parametrize("share", [0.5, 0.8, 0.95])
 def test_a_clipped_record_is_found(record, name, share):

@@ -13,7 +13,7 @@ import pytest
 from pipeline.motions import MotionError, read_motion
 from pipeline.motions import parts as parts_module
 from pipeline.motions.corners import STEP
-from pipeline.motions.earthquakes import earthquakes
+from pipeline.motions.earthquakes import AFTER, BEFORE, earthquakes, window_of
 from pipeline.motions.entries import entries
 from pipeline.motions.intensity import measures
 from pipeline.motions.parts import CHUNK, MARGIN, scan, whole
@@ -207,6 +207,18 @@ def test_several_earthquakes_are_listed_and_one_is_chosen(tmp_path, write_manife
     assert np.array_equal(exact.acceleration, same.acceleration)
     with pytest.raises(MotionError, match=r"no earthquake is found within 300 s.*00:08:2"):
         read_motion(write_manifest(**COMMON, origin_time="2020-01-01T00:20:00Z"))
+
+
+def test_shaking_that_a_foreshock_began_is_of_the_earthquake_behind_it(tmp_path):
+    """A foreshock 15 s before the main shock of 1200 to 1260 s; an aftershock from 1400 s is not taken in its place."""
+    data = shaken(3600.0, 1200.0) + shaken(3600.0, 1400.0, size=900.0, seed=1)
+    data[118500:119500] += np.round(60.0 * np.sin(2.0 * np.pi * 0.03 * np.arange(1000))).astype(np.int32)
+    write(tmp_path, data)
+    pieces = scan(tmp_path / "HNE.mseed")
+    for origin, begins, ends in ((1198.0, 1185.0, 1262.0), (1245.0, 1400.0, 1462.0)):
+        start, end = window_of([pieces], START + origin)
+        assert origin + start == pytest.approx(begins - BEFORE, abs=5.0)
+        assert origin + end == pytest.approx(ends + AFTER, abs=8.0)
 
 
 def test_pieces_of_several_earthquakes_in_one_file(tmp_path, write_manifest):

@@ -19,7 +19,7 @@ NAMES = {
     "FILM_V1": "V1 of film (CSMIP, USC, RENADIC)",
     "GEONET": "GeoNet V1A and V2A",
     "JMA_CSV": "JMA CSV",
-    "MOTION_COLUMNS": "bare columns of time and acceleration",
+    "MOTION_COLUMNS": "columns or one series of numbers, bare or under a head in words",
     "MOTION_CSV": "CSV with units in its head",
     "NSMN": "NSMN (Türkiye)",
     "PEER_AT2": "PEER AT2",

@@ -1,89 +1,316 @@
-"""Bare columns of numbers: time at even steps, then one acceleration or three, and not a word on their units.
+"""Columns or one series of numbers, bare or under a head in words: what programs, loggers and many agencies print.
 
-Which unit, which orientation, and whether raw or processed, the manifest must say.
+Bare columns are a time at even steps, then accelerations.  Under a head (see `labels`) the step may be said in place of
+a column of time, a series may be wrapped over rows of any width, and the first line of numbers may be their number and
+step ("8192 0.01").  What no word says of unit, orientation, and raw or processed, the manifest must say.
 
-source : no agency's; what programs print
+source : no agency's; GeoCSV 2.0, SIMBAD, CSN (Chile), SCEC's Broadband Platform, SeismoSignal, DEEPSOIL and eqsig are
+         such
 """
 
 from __future__ import annotations
 
 import re
+from array import array
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import blocks, cwa, irregular, record_text, trace_headers
-from pipeline.motions.formats.record_text import Lines, Source
+from pipeline.motions.formats import blocks, header_facts, irregular, labels, record_text, trace_headers
+from pipeline.motions.formats.labels import Column, Head
+from pipeline.motions.formats.record_text import Lines, Source, shown
+from pipeline.quantities import Array
 
 _NUMBER = re.compile(r"^[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[Ee][+-]?\d{1,3})?$")
-_LEAST_ROWS, _MOST_COLUMNS = 5, 4
-_MOST_COMMENTS = 100
+_MOMENT = re.compile(r"^\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(?:\.\d{1,9})?Z?$")
+_TOUCHING = re.compile(r"(?<=\d)(?=[+-]\d*\.)")
+_DECIMAL = re.compile(r"(?<=\d),(?=\d)")
+_LEAST_ROWS, _MOST_COLUMNS, _MOST_HEAD = 5, 20, 200
+_BARE = 4
+"""Most columns of a table that nothing names."""
+
+_OTHERS = ("bhrc", "cosmos", "csmip", "csmnc", "cwa", "esm", "geonet", "jma", "nsmn", "peer", "smc", "table", "unam",
+           "volume1")  # fmt: skip
 
 
 def is_format(source: Source) -> bool:
-    """Whether a source is such columns: only numbers, the first of each row a time that goes on evenly."""
+    """Whether a source is such numbers, under a head that says their step, or with a time; and no agency's format."""
     text = record_text.head(source)
+    whole = len(text) < record_text.HEAD
     # The last line of what was read may be half of one.
-    lines = text.splitlines() if len(text) < record_text.HEAD else text.splitlines()[:-1]
-    rows = [_split(line) for line in lines[_top(lines) :] if line.strip()]
-    # Taiwan's header is all comments, and columns follow it.
-    if cwa.is_format(source) or len(rows) < _LEAST_ROWS or not 2 <= len(rows[0]) <= _MOST_COLUMNS:
+    lines = Lines("", [line.encode("latin-1") for line in text.splitlines()[: None if whole else -1]])
+    top = _top(lines)
+    if top is None or len(lines) - top < _LEAST_ROWS:
         return False
-    if any(len(row) != len(rows[0]) or not all(_NUMBER.match(cell) for cell in row) for row in rows):
+    try:
+        block, start = _layout(lines, top, whole=whole)
+        _step(lines, start, block)
+    except record_text.FormatError:
         return False
-    times = np.array([float(row[0]) for row in rows])
-    return bool(np.isfinite(times).all()) and irregular.even_step(times, _digit([row[0] for row in rows])) is not None
+    return not any(import_module(f"{__package__}.{name}").is_format(source) for name in _OTHERS)
+
+
+def series(lines: Lines) -> tuple[Array, int, int] | None:
+    """Return all numbers of a file in a row, whatever head it has.
+
+    Parameters
+    ----------
+    lines : Lines
+        Of the file.
+
+    Returns
+    -------
+    (array, int, int) or None
+        The numbers, the line that they begin in, from 0, and how many a line has, the last of which may have fewer;
+        None for a file without rows of numbers.
+
+    Raises
+    ------
+    FormatError
+        At a row that holds something else, or more or fewer numbers than the first.
+    """
+    top = _top(lines)
+    if top is None:
+        return None
+    form = _form(lines.text(top))
+    width = len(_cells(lines, top, form))
+    return _values(lines, top, form, width)[0], top, width
+
+
+class _Block:
+    """Rows of numbers, before any of them is given a meaning.
+
+    Attributes
+    ----------
+    head : Head
+        What the lines before them say.
+    step : float or None
+        In s, as the head says it, or a first line of number and step.
+    times : array or None
+        A first column that is a time at even steps.
+    data : array, shape (n, k)
+        The other columns; one of all numbers, where they are one series.
+    columns : tuple of Column
+        Their names, where the head has them.
+    """
+
+    def __init__(self, head: Head, data: Array, columns: tuple[Column, ...]) -> None:
+        self.head, self.data, self.columns = head, data, columns
+        self.step = head.step
+        self.times: Array | None = None
+
+
+def _top(lines: Lines) -> int | None:
+    """The first of three lines that are numbers and nothing else."""
+    found = 0
+    for index in range(min(len(lines), _MOST_HEAD + 3)):
+        text = record_text.printable(lines.lines[index])
+        if text.strip() and _row(text, *_form(text)) is not None:
+            found += 1
+            if found == 3:
+                return index - 2
+        elif text.strip() or found:
+            found = 0
+    return None
+
+
+def _form(text: str) -> tuple[str | None, bool]:
+    """What parts the cells of a row, and whether commas are decimal commas."""
+    if ";" in text or "\t" in text.strip():
+        return (";" if ";" in text else "\t"), bool(_DECIMAL.search(text))
+    return ("," if "," in text else None), False
+
+
+def _row(text: str, separator: str | None, comma: bool) -> list[str] | None:
+    """The numbers of a row, None where it has something else; a time of the calendar in front is left out."""
+    text = _DECIMAL.sub(".", text) if comma else text
+    cells = text.strip().rstrip(separator).split(separator) if separator else _TOUCHING.sub(" ", text).split()
+    cells = [cell.strip() for cell in cells]
+    if len(cells) > 1 and _MOMENT.match(cells[0]):
+        cells = cells[1:]
+    return cells if cells and all(_NUMBER.match(cell) for cell in cells) else None
+
+
+def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]:
+    """Return the numbers from a line on, as columns or as one series, and the first line of them.
+
+    Of a file's first part alone, it is one series where more numbers are announced than there are rows.
+    """
+    form = _form(lines.text(top + 1, "a row of numbers"))
+    first = _row(lines.text(top), *_form(lines.text(top))) or []
+    second = _row(lines.text(top + 1), *form) or []
+    counted = None
+    # "8192 0.01" before the numbers: another width than theirs, or no time at even steps from there.
+    if len(first) == 2 and first[0].isdigit() and blocks.STEP_LEAST <= float(first[1]) <= blocks.STEP_MOST:
+        third = _row(lines.text(top + 2, "a row of numbers"), *form) or second
+        apart = len(second) != 2 or abs(float(third[0]) - float(second[0]) - float(first[1])) < 1e-6
+        if apart and abs(float(second[0]) - float(first[0]) - float(first[1])) > 1e-6:
+            counted = int(first[0]), float(first[1])
+    start = top + 1 if counted else top
+    width = len(_cells(lines, start, form))
+    head = labels.read_head(lines, top, width + _moments(lines, start, form), form[0])
+    if counted:
+        head.says(lines, top, "count", counted[0])
+        head.says(lines, top, "step", counted[1])
+    columns = head.columns[-width:] if head.columns else ()
+    values, lengths = _values(lines, start, form, width)
+    block = _Block(head, values, columns)
+    even = lengths == width and width > 1
+    table = values.reshape(-1, width) if even else values[:, None]
+    timed = even and _timed(table, columns, head, lines, start, form)
+    announced = head.count or 0
+    one = width == 1 or (
+        not columns and not timed and (announced == values.size or (not whole and announced > len(table)))
+    )
+    if even and not one and (timed or columns or head.count == len(table)):
+        block.data = table
+        if timed:
+            block.times, block.data, block.columns = table[:, 0], table[:, 1:], columns[1:]
+    elif one:
+        block.data, block.columns = values[:, None], columns if width == 1 else ()
+    elif announced:
+        wrong = f"announces {announced} samples, and {values.size} numbers are there, {width} a row"
+        raise lines.error(head.at["count"], wrong, "it is cut off or damaged: fetch it again")
+    else:
+        wrong = f"neither names of columns nor a count say whether {width} numbers a row are components or one series"
+        raise lines.error(start, wrong, "name the columns: kouros motions convert")
+    return block, start
+
+
+def _timed(
+    table: Array, columns: tuple[Column, ...], head: Head, lines: Lines, start: int, form: tuple[str | None, bool]
+) -> bool:
+    if columns or not (head.step or head.count):
+        # Where nothing else says the step, the first column has to.
+        return columns[0].is_time if columns else table.shape[1] <= _BARE
+    rows = range(start, min(start + 20, len(lines)))
+    digit = _digit([cells[0] for i in rows if (cells := _row(lines.text(i), *form))])
+    return len(table) >= _LEAST_ROWS and irregular.even_step(table[:, 0], digit) is not None
+
+
+def _cells(lines: Lines, index: int, form: tuple[str | None, bool]) -> list[str]:
+    cells = _row(lines.text(index), *form)
+    if cells is None or len(cells) > _MOST_COLUMNS:
+        wrong = f"expected at most {_MOST_COLUMNS} numbers, found {shown(lines.text(index))}"
+        raise lines.error(index, wrong)
+    return cells
+
+
+def _moments(lines: Lines, index: int, form: tuple[str | None, bool]) -> int:
+    """How many cells of a row are a time of the calendar, which is left out."""
+    return int(bool(form[0]) and bool(_MOMENT.match(lines.text(index).split(form[0])[0].strip())))
+
+
+def _values(lines: Lines, start: int, form: tuple[str | None, bool], width: int) -> tuple[Array, int]:
+    """All numbers from a line on, and how many each row has: the last of a series may have fewer, which gives 0."""
+    end = len(lines)
+    while end > start and not lines.lines[end - 1].strip(b" \t\0\x1a,;"):
+        end -= 1
+    values = array("d")
+    same = width
+    for index in range(start, end):
+        cells = _row(lines.text(index), *form)
+        if cells is None or len(cells) != width:
+            if cells is None or index < end - 1 or len(cells) > width:
+                raise lines.error(index, f"expected {width} numbers, found {shown(lines.text(index))}")
+            same = 0
+        values.extend(map(float, cells))
+    blocks.samples(lines, start, len(values))
+    found = np.array(values)
+    if not np.isfinite(found).all():
+        past = int(np.flatnonzero(~np.isfinite(found))[0])
+        raise lines.error(start + past // width, "holds a number beyond all bounds")
+    return found, same
 
 
 def _traces(lines: Lines, headonly: bool) -> list[Any]:
-    """Return the traces of columns, one for each after the time; the file says no unit (`units` is "")."""
-    top = _top([lines.text(index) for index in range(min(len(lines), _MOST_COMMENTS + 1))])
-    text = lines.text(top, "the first row of numbers")
-    columns = len(_split(text))
-    if not 2 <= columns <= _MOST_COLUMNS:
-        raise lines.error(top, f"expected 2 to {_MOST_COLUMNS} numbers, found {record_text.shown(text)}")
-    table = blocks.rows(lines, top, columns, "time and acceleration", _separator(text))
-    first = [lines.text(index) for index in range(top, min(top + 20, len(lines)))]
-    dt = irregular.even_step(table[:, 0], _digit([_split(line)[0] for line in first if _split(line)]))
-    if dt is None:
-        raise lines.error(*_uneven(top, table[:, 0]), "give equal time steps: resample the record first")
-    blocks.step(lines, top, dt)
-    return [
-        trace_headers.make_trace(
-            lines,
-            data=table[:, number].copy(),
-            dt=dt,
-            form="columns",
-            units="",
-            si_factor=None,
-            direction=None,
-            processed=None,
-            location=f"{number:02d}",
-            channel=trace_headers.channel_code(1.0 / dt, None, number),
-            headonly=headonly,
+    """Return the traces of such numbers, one a component; what no word says of the unit leaves `units` ""."""
+    top = _top(lines)
+    if top is None:
+        raise lines.error(0, "expected rows of numbers, which are nowhere", "give a file of accelerations")
+    block, start = _layout(lines, top)
+    head = block.head
+    dt = _step(lines, start, block)
+    count, width = block.data.shape
+    if head.count is not None and head.count != count:
+        wrong = f"announces {head.count} samples, and {count} are there"
+        raise lines.error(head.at["count"], wrong, "it is cut off or damaged: fetch it again")
+    if not block.columns and width > _BARE - 1:
+        raise lines.error(start, f"nothing names its {width} columns", "name them: kouros motions convert")
+    chosen = _accelerations(lines, block)
+    begins = None if head.start is None else trace_headers.start_time(lines, head.at["start"], *head.start)
+    traces = []
+    for number in chosen:
+        column = block.columns[number] if block.columns else Column("", "", "")
+        unit = column.unit if column.kind else head.unit
+        named = column.name and (width > 1 or labels.points(column.orientation))
+        said = column.orientation if named else head.orientation
+        factor = trace_headers.FACTORS.get(unit)
+        data = block.data[:, number].copy()
+        peak = head.peak[0] if head.peak and width == 1 and factor else None
+        if peak and head.peak and factor:
+            trace_headers.said_peak(lines, head.at["peak"], *head.peak, data, factor)
+        network, station, location, channel = head.code
+        traces.append(
+            trace_headers.make_trace(
+                lines,
+                data=data,
+                dt=dt,
+                form="columns",
+                units=unit,
+                si_factor=factor,
+                direction=said,
+                processed=head.processed,
+                network=network,
+                station=station,
+                location=location or (f"{number + 1:02d}" if width > 1 or not channel else ""),
+                channel=channel or trace_headers.channel_code(1.0 / dt, said, number + 1),
+                start=begins,
+                start_is="unknown" if begins is None else "record",
+                headonly=headonly,
+                peak={"acceleration": peak},
+                more={"column": column.name} if column.name else {},
+                about=header_facts.about(**head.about),
+            )
         )
-        for number in range(1, columns)
-    ]
+    return traces
 
 
-def _uneven(top: int, times: Any) -> tuple[int, str]:
-    steps = np.diff(times)
-    worst = int(np.argmax(np.abs(steps - np.median(steps)))) + 1
-    return top + worst, f"time {times[worst]:g} s is off the even step of {np.median(steps):g} s"
+def _accelerations(lines: Lines, block: _Block) -> list[int]:
+    """The columns that hold accelerations, or say nothing; velocities and displacements beside them are left out."""
+    kinds = [column.kind for column in block.columns] or [block.head.kind] * block.data.shape[1]
+    kinds = [kind or block.head.kind for kind in kinds]
+    chosen = [number for number, kind in enumerate(kinds) if kind in {"acceleration", "counts", ""}]
+    if "acceleration" in kinds:
+        chosen = [number for number, kind in enumerate(kinds) if kind == "acceleration"]
+    if not chosen:
+        at = block.head.at.get("unit", block.head.at.get("columns", 0))
+        unit = block.columns[0].unit if block.columns and block.columns[0].unit else block.head.unit
+        wrong = f"holds {kinds[0]} ({unit}), no acceleration"
+        raise lines.error(at, wrong, "give the file of the acceleration")
+    return chosen
 
 
-def _top(lines: list[str]) -> int:
-    plain = (i for i, line in enumerate(lines[:_MOST_COMMENTS]) if line.strip() and line.lstrip()[0] not in "#%")
-    return next(plain, 0)
-
-
-def _separator(text: str) -> bytes | None:
-    return next((mark.encode() for mark in ",;" if mark in text), None)
-
-
-def _split(line: str) -> list[str]:
-    separator = _separator(line)
-    return [cell.strip() for cell in line.split(separator.decode())] if separator else line.split()
+def _step(lines: Lines, start: int, block: _Block) -> float:
+    head, step = block.head, block.head.step
+    if block.times is None:
+        if step is None:
+            raise lines.error(start, "nothing says the time step", "say it: kouros motions convert --dt")
+        return blocks.step(lines, head.at["step"], step)
+    form = _form(lines.text(start))
+    first = [cells[0] for i in range(start, min(start + 20, len(lines))) if (cells := _row(lines.text(i), *form))]
+    times = block.times * (labels.seconds(head.columns[0].unit) if head.columns else 1.0)
+    dt = irregular.even_step(times, _digit(first))
+    if dt is None:
+        steps = np.diff(times)
+        worst = int(np.argmax(np.abs(steps - np.median(steps)))) + 1
+        wrong = f"time {times[worst]:g} s is off the even step of {np.median(steps):g} s"
+        raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
+    if step is not None and abs(dt - step) > 2e-3 * dt:
+        wrong = f"says a step of {step:g} s, and the times have one of {dt:g} s"
+        raise lines.error(head.at["step"], wrong, "find out which is right, and mend the other")
+    return blocks.step(lines, start, dt)
 
 
 def _digit(cells: list[str]) -> float:

@@ -1,7 +1,8 @@
-"""ESM ASCII (DYNA 1.2), as ESM, ITACA and AFAD (TADAS) write it: one component.
+"""ESM ASCII (DYNA 1.0 to 1.2, and ITACA 1), as ESM, ITACA and AFAD (TADAS) write it: one component.
 
-Lines of "KEY: value" as far as USER5, then one number a line.  The orientation is the one that the channel code stands
-for (SEED: N and E within 5 degrees); a channel that ends in 1 or 2 has none in its file.
+Lines of "KEY: value", then one number a line.  The orientation is the one that the channel code stands for (SEED: N and
+E within 5 degrees); a channel that ends in 1 or 2 has none in its file.  ITACA 1 has COMPONENT (WE, NS, UP) in place of
+STREAM, a time of the first sample without its day, and says by DATA_TYPE whether a record is processed.
 
 source : ESM, header format DYNA 1.2, https://esm-db.eu
 """
@@ -22,6 +23,10 @@ _DATES = (
     re.compile(r"^(?P<y>\d{4})/(?P<m>\d\d)/(?P<d>\d\d)[ _]" + _CLOCK),
     re.compile(r"^(?P<d>\d\d)/(?P<m>\d\d)/(?P<y>\d{4})[ _]" + _CLOCK),
 )
+_TYPE = re.compile(r"^(UNPROCESSED |PROCESSED )?ACCELERATION$", re.IGNORECASE)
+_COMPONENTS: dict[str, trace_headers.Orientation] = {"WE": 90.0, "EW": 90.0, "NS": 0.0, "SN": 0.0, "UP": "up"}
+"""East and north are positive, whichever way the two letters go."""
+_CLOCKS = re.compile(r"^(\d\d):?(\d\d):?(\d\d(?:\.\d{0,9})?)$")
 _NUMBER = re.compile(r"^[+-]?\d{0,9}\.?\d{1,12}(?:[Ee][+-]?\d{1,2})?$")
 _MOST_KEYS = 200
 _PLACES = {
@@ -42,7 +47,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     keys = _header(lines)
     said = keys.said
     at, kind = said("DATA_TYPE")
-    if kind.upper() != "ACCELERATION":
+    if not _TYPE.match(kind):
         raise lines.error(at, f"the file holds {record_text.shown(kind)}", "give the file of the acceleration")
     at, unit = said("UNITS")
     if unit.lower() not in _UNITS:
@@ -54,20 +59,15 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         raise lines.error(at, f"expected the number of samples, found {record_text.shown(number)}")
     count = blocks.samples(lines, at, int(number))
     data = blocks.free(lines, keys.end, count, "acceleration")
-    at, first = said("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS")
-    date = next((found for form in _DATES if (found := form.match(first))), None)
-    if first and date is None:
-        raise lines.error(at, f"expected a time such as 20190728_160919.870, found {record_text.shown(first)}")
-    when = None if date is None else trace_headers.start_time(lines, at, *(float(date[part]) for part in "ymdHMS"))
+    when = _start(lines, keys)
     at, peak = keys.get("PGA_CM/S^2", (0, ""))
     if peak:
         digit = 0.01 * 10.0 ** -len(peak.partition(".")[2])
         trace_headers.said_peak(lines, at, 0.01 * _number(lines, at, peak), digit, data, trace_headers.FACTORS[unit])
-    channel = said("STREAM")[1]
+    channel, direction, how = _channel(keys, dt)
     # A code of two letters in ESM; in the files of AFAD the name of the place.
     place = keys.get("LOCATION", (0, ""))[1]
     processed, assumed = _processed(keys)
-    notes = "orientation by the channel code (SEED: N and E within 5 degrees)"
     trace = trace_headers.make_trace(
         lines,
         data=data,
@@ -75,17 +75,17 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         form="ESM ASCII",
         units=unit,
         si_factor=trace_headers.FACTORS[unit],
-        direction=trace_headers.seed_orientation(channel),
+        direction=direction,
         processed=processed,
         station=said("STATION_CODE")[1],
-        network=said("NETWORK")[1],
+        network=keys.get("NETWORK", (0, ""))[1],
         location=place if len(place) <= 2 else "",
         channel=channel,
         start=when,
         start_is="unknown" if when is None else "record",
         headonly=headonly,
         peak={"acceleration": 0.01 * _number(lines, at, peak) if peak else None},
-        more={"notes": f"{notes}; {assumed}" if assumed else notes},
+        more={"notes": f"{how}; {assumed}" if assumed else how},
         about=_about(keys),
     )
     return [trace]
@@ -102,6 +102,32 @@ def _header(lines: Lines) -> Keys:
     raise lines.error(min(len(lines), _MOST_KEYS), "expected the first value of acceleration", "fetch the file again")
 
 
+def _start(lines: Lines, keys: Keys) -> Any:
+    """Return the time of the first sample; ITACA 1 says its clock alone, which may be of the day before or after."""
+    if (clock := _CLOCKS.match(keys.get("TIME_FIRST_SAMPLE_S", (0, ""))[1])) and (origin := _origin(keys)):
+        parts = (origin.year, origin.month, origin.day, *map(float, clock.groups()))
+        when = trace_headers.start_time(lines, keys["TIME_FIRST_SAMPLE_S"][0], *parts)
+        return when + 86400.0 * round((origin - when) / 86400.0)
+    if "TIME_FIRST_SAMPLE_S" in keys:
+        return None
+    at, first = keys.said("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS")
+    date = next((found for form in _DATES if (found := form.match(first))), None)
+    if first and date is None:
+        raise lines.error(at, f"expected a time such as 20190728_160919.870, found {record_text.shown(first)}")
+    return None if date is None else trace_headers.start_time(lines, at, *(float(date[part]) for part in "ymdHMS"))
+
+
+def _channel(keys: Keys, dt: float) -> tuple[str, trace_headers.Orientation, str]:
+    """Return the channel's code, its orientation, and by what it is known."""
+    if "STREAM" in keys or "COMPONENT" not in keys:
+        code = keys.said("STREAM")[1]
+        how = "orientation by the channel code (SEED: N and E within 5 degrees)"
+        return code, trace_headers.seed_orientation(code), how
+    word = keys["COMPONENT"][1]
+    direction = _COMPONENTS.get(word.upper(), trace_headers.orientation(word))
+    return trace_headers.channel_code(1.0 / dt, direction, None), direction, f"orientation by COMPONENT: {word[:20]}"
+
+
 def _number(lines: Lines, index: int, text: str) -> float:
     if not _NUMBER.match(text):
         raise lines.error(index, f"expected a number, found {record_text.shown(text)}")
@@ -109,19 +135,13 @@ def _number(lines: Lines, index: int, text: str) -> float:
 
 
 def _about(keys: Keys) -> dict[str, Any]:
-    day = re.match(r"^(\d{4})/?(\d\d)/?(\d\d)$", keys.get("EVENT_DATE_YYYYMMDD", (0, ""))[1])
-    text = keys.get("EVENT_TIME_HHMMSS", (0, ""))[1]
-    clock = re.match(r"^(\d\d):?(\d\d):?(\d\d(?:\.\d{0,9})?)$", text)
     name = keys.get("EVENT_NAME", (0, ""))[1]
     said = {key: header_facts.number(keys, f"{word}_DEGREE") for key, word in _PLACES.items()}
-    when = None
-    if day is not None and clock is not None:
-        when = header_facts.moment(*map(float, day.groups()), *map(float, clock.groups()))
     return header_facts.about(
         **said,
-        **header_facts.magnitude({kind: header_facts.number(keys, f"MAGNITUDE_{kind}") for kind in "WL"}),
+        **header_facts.magnitude({kind: header_facts.number(keys, f"MAGNITUDE_{kind}") for kind in "WSL"}),
         event_name="" if name.isdigit() else name.title() if name.isupper() else name,
-        event_time=when,
+        event_time=_origin(keys),
         event_depth_km=header_facts.number(keys, "EVENT_DEPTH_KM"),
         distance_km=header_facts.number(keys, "EPICENTRAL_DISTANCE_KM"),
         station_name=keys.get("STATION_NAME", (0, ""))[1],
@@ -129,7 +149,15 @@ def _about(keys: Keys) -> dict[str, Any]:
     )
 
 
+def _origin(keys: Keys) -> Any:
+    day = re.match(r"^(\d{4})/?(\d\d)/?(\d\d)$", keys.get("EVENT_DATE_YYYYMMDD", (0, ""))[1])
+    clock = _CLOCKS.match(keys.get("EVENT_TIME_HHMMSS", (0, ""))[1])
+    return header_facts.moment(*map(float, day.groups()), *map(float, clock.groups())) if day and clock else None
+
+
 def _processed(keys: dict[str, tuple[int, str]]) -> tuple[bool | None, str]:
+    if (kind := _TYPE.match(keys["DATA_TYPE"][1])) and kind[1]:
+        return not kind[1].upper().startswith("UN"), ""
     how = keys.get("PROCESSING", (0, ""))[1].lower()
     filtered = keys.get("FILTER_TYPE", (0, ""))[1]
     corners = [keys[key][1] for key in ("LOW_CUT_FREQUENCY_HZ", "HIGH_CUT_FREQUENCY_HZ") if key in keys]

@@ -1,8 +1,8 @@
 """PEER AT2: one component of acceleration in g, as the NGA databases and the older PEER database give it.
 
-Four lines of text, the last with the number of samples and the step ("NPTS=  7818, DT= .0050 SEC" or "7818 .0050 NPTS,
-DT"), then numbers.  The orientation is the last item of the second line.  The header does not say whether a record is
-processed: the manifest must.
+Four lines of text, the last with the number of samples and the step ("NPTS=  7818, DT= .0050 SEC", with or without its
+comma, or "7818 .0050 NPTS, DT"), then numbers.  The orientation is the last item of the second line.  The header does
+not say whether a record is processed: the manifest must.
 
 source : header of the files of the PEER NGA-West2 database
 """
@@ -16,8 +16,9 @@ from pipeline.motions.formats import blocks, record_text, trace_headers
 from pipeline.motions.formats.record_text import Lines, Source
 
 _UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF (G\b|CM/S|.*)", re.IGNORECASE)
-_NEW = re.compile(r"NPTS\s*=\s*(\d{1,9})\s*,\s*DT\s*=\s*(\d{0,4}\.\d{1,9}(?:E-?\d)?)", re.IGNORECASE)
+_NEW = re.compile(r"NPTS\s*=\s*(\d{1,9})\s*[,\s]\s*DT\s*=\s*(\d{0,4}\.\d{1,9}(?:E-?\d)?)", re.IGNORECASE)
 _SEED = re.compile(r"([BEHLS][HNLG][A-Z0-9])(?:\d\d|--)?")
+_REMARK = re.compile(r"\([^()]*\)\s*$")
 _OLD = re.compile(r"^\s*(\d{1,9})\s+(\d{0,4}\.\d{1,9})\s+NPTS\s*,\s*DT", re.IGNORECASE)
 
 
@@ -41,7 +42,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     dt = blocks.step(lines, 3, float(found[2]))
     data = blocks.free(lines, 4, count, "acceleration")
     title = lines.text(1)
-    direction = _direction(title.rpartition(",")[2].strip()) if "," in title else None
+    direction, assumed = _direction(title.rpartition(",")[2]) if "," in title else (None, "")
     trace = trace_headers.make_trace(
         lines,
         data=data,
@@ -53,16 +54,18 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         processed=None,
         channel=trace_headers.channel_code(1.0 / dt, direction, 1),
         headonly=headonly,
-        more={"title": title},
+        more={"title": title} | ({"notes": assumed} if assumed else {}),
     )
     return [trace]
 
 
-def _direction(word: str) -> trace_headers.Orientation:
+def _direction(word: str) -> tuple[trace_headers.Orientation, str]:
     """What the last item of a title says; in NGA-East it is a channel of SEED, such as BHZ00, with the location."""
+    # "164 (CDMG STATION 279)" names the station; "-UP" and "--V" are filled up to three characters.
+    word = _REMARK.sub("", word).strip().lstrip("-")
     code = _SEED.fullmatch(word.upper())
     coded = trace_headers.seed_orientation(code[1]) if code else None
-    return trace_headers.orientation(word) if coded is None else coded
+    return trace_headers.component(word) if coded is None else (coded, "")
 
 
 read_format = record_text.reader(_traces)

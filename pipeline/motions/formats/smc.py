@@ -1,9 +1,10 @@
 """USGS SMC: one component of acceleration in cm/s2, uncorrected or corrected.
 
-Eleven lines of text, 48 integers, 50 reals, comments, then eight fields of ten characters a line.  A file without a
-sampling rate holds pairs of time and acceleration as they were digitised from film, at irregular times; they are
-resampled linearly, which the trace says.  Files may end in a stale record or in NUL bytes, left by the system that
-wrote them; the count in the header says where the data end.
+Eleven lines of text, 48 integers, 50 reals, comments, then eight fields of ten characters a line, or five of fourteen.
+A file of unknown kind, as programs make them of other formats, says neither its unit nor whether it is corrected.  A
+file without a sampling rate holds pairs of time and acceleration as they were digitised from film, at irregular times;
+they are resampled linearly, which the trace says.  Files may end in a stale record or in NUL bytes, left by the system
+that wrote them; the count in the header says where the data end.
 
 source : USGS National Strong-Motion Program, SMC-format data files, https://nsmp.wr.usgs.gov/smcfmt.html
 """
@@ -19,14 +20,18 @@ from pipeline.motions.formats.record_text import NUMBER, Lines, Source
 from pipeline.motions.formats.trace_headers import Orientation
 from pipeline.quantities import Array
 
-_TITLE = re.compile(r"^\s*([1-5]) (UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|RESPONSE)")
+_TITLE = re.compile(
+    r"^\s*([0-5]) (UNKNOWN|UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|RESPONSE)"
+)
 _INTEGERS = re.compile(r"^(?:[ \d-]{10}){8}$")
 _COMPONENT = re.compile(r"component=\s*(.*)$")
 _STATION = re.compile(r"station\s*=\s*(.*?)\s*component")
 _EVENT = re.compile(r"^\s*\d{4}\s+\d{1,2}\s+\d{1,2}\s+\d{1,4}\s+([A-Za-z].{0,60}?)\s*$")
 _PEAK = re.compile(rf"\bpk(?: acc)?\s*=\s*({NUMBER})")
 _TEXT, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
-_FORMS = {"1": "SMC uncorrected", "2": "SMC corrected"}
+_FORMS = {"0": "SMC of unknown kind", "1": "SMC uncorrected", "2": "SMC corrected"}
+_PRECISE = 8
+"""Digits, by the 47th integer, of files whose numbers have fourteen characters in place of ten."""
 
 
 def is_format(source: Source) -> bool:
@@ -72,27 +77,29 @@ def read_format(source: Source, headonly: bool = False, resample: float = irregu
     index = _after_comments(lines, index, integers)
     count = _whole(lines, _TEXT + 2, integers[16], "the number of values")
     blocks.samples(lines, _TEXT + 2, count)
-    values, end = blocks.fixed(lines, index, count, 8, 10, "acceleration")
+    fields, width = (5, 14) if integers[46] == _PRECISE else (8, 10)
+    values, end = blocks.fixed(lines, index, count, fields, width, "acceleration")
     more = _rest(lines, end)
     direction = _direction(lines, integers)
     if _missing(reals, reals[1]):
-        data, dt, more["resampled"] = _pairs(lines, index, values, resample)
+        data, dt, more["resampled"] = _pairs(lines, index, values, fields // 2, resample)
     else:
         data, dt = values, blocks.step(lines, _TEXT + _INTEGER_LINES, 1.0 / max(float(reals[1]), 1e-9))
     found, when = _PEAK.search(lines.text(6)), _earthquake(lines, integers)
     if name := _STATION.search(lines.text(5)):
         more["station_name"] = name[1]
     quake = _EVENT.match(lines.text(3))
+    unknown = kind[1] == "0"
     number = int(integers[8]) if integers[8] > 0 and not _missing(integers, integers[8]) else None
     trace = trace_headers.make_trace(
         lines,
         data=data,
         dt=dt,
         form=_FORMS[kind[1]],
-        units="cm/s2",
-        si_factor=trace_headers.FACTORS["cm/s2"],
+        units="" if unknown else "cm/s2",
+        si_factor=None if unknown else trace_headers.FACTORS["cm/s2"],
         direction=direction,
-        processed=kind[1] == "2",
+        processed=None if unknown else kind[1] == "2",
         station="" if integers[7] == integers[0] else f"{integers[7]:.0f}",
         channel=trace_headers.channel_code(1.0 / dt, direction, number),
         start=when,
@@ -181,8 +188,8 @@ def _earthquake(lines: Lines, integers: Array) -> Any:
     return trace_headers.start_time(lines, _TEXT, when.year, when.month, when.day, *parts)
 
 
-def _pairs(lines: Lines, index: int, values: Array, dt: float) -> tuple[Array, float, str]:
+def _pairs(lines: Lines, index: int, values: Array, per_line: int, dt: float) -> tuple[Array, float, str]:
     if len(values) % 2:
         raise lines.error(_TEXT + 2, f"{len(values)} values make no pairs of time and acceleration")
-    data, told = irregular.resampled(lines, index, 4, values[::2], values[1::2], dt)
+    data, told = irregular.resampled(lines, index, per_line, values[::2], values[1::2], dt)
     return data, dt, told

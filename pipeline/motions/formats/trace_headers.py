@@ -53,7 +53,7 @@ class Series:
 _QUADRANT = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d*)?)\s*([EW])")
 _AZIMUTH = re.compile(r"(\d{1,3}(?:\.\d*)?)\s*(?:DEG(?:REES)?)?\.?")
 _WORDS: dict[str, Orientation] = {"UP": "up", "DOWN": "down", "DN": "down", "DWN": "down"}
-_WORDS |= {"NS": 0.0, "N-S": 0.0, "EW": 90.0, "E-W": 90.0, "UD": "up", "U-D": "up"}
+_WORDS |= {"NS": 0.0, "N-S": 0.0, "EW": 90.0, "E-W": 90.0, "UD": "up", "U-D": "up", "UPDO": "up"}
 _VERTICAL = {"V", "Z", "VER", "VERT", "VERTICAL"}
 _WORDS |= {"N": 0.0, "NORTH": 0.0, "E": 90.0, "EAST": 90.0, "S": 180.0, "SOUTH": 180.0, "W": 270.0, "WEST": 270.0}
 

@@ -32,5 +32,10 @@ SPECIMENS: dict[str, tuple[str, Callable[[], bytes]]] = {
     "jma": ("jma", national.jma),
     "csmnc": ("csmnc", national.csmnc),
     "columns": ("columns", national.columns),
+    "itaca-1": ("esm", national.itaca),
+    "series-of-words": ("columns", national.series),
+    "columns-of-words": ("columns", national.worded),
+    "columns-of-a-platform": ("columns", national.platform),
+    "geocsv": ("columns", national.geocsv),
 }
 """Name -> the reader's module in pipeline.motions.formats, and what writes the file."""

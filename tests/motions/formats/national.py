@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tests.motions.formats.specimens import DT, fortran, joined, tone
+from tests.motions.formats.specimens import DT, esm, fortran, joined, tone
 
 
 def volume1(
@@ -179,3 +179,47 @@ def knet(direction: str = "N-S", count: int = 800, peak: str = "") -> bytes:
         "Last Correction   2018/01/24 19:51:37", "Memo.             ",
     ]  # fmt: skip
     return joined(lines + fortran(counts, 8, "{:8d} "), "\n")
+
+
+def itaca() -> bytes:
+    """ITACA 1: COMPONENT, a first sample without its day, and raw or processed by DATA_TYPE."""
+    content = esm("", DATA_TYPE="UNPROCESSED ACCELERATION", FILTER_TYPE="", EVENT_DATE_YYYYMMDD="19971014",
+                  EVENT_TIME_HHMMSS="235909", TIME_FIRST_SAMPLE_S="000010.500", COMPONENT="WE")  # fmt: skip
+    dropped = (b"STREAM", b"NETWORK", b"DATE_TIME_FIRST", b"PROCESSING", b"USER5")
+    return b"".join(line for line in content.splitlines(True) if not line.startswith(dropped))
+
+
+def series() -> bytes:
+    """SIMBAD: labels, and one series wrapped over rows whose numbers touch."""
+    lines = [
+        "Event Date & Time             : 2001-01-01 01:32:39", "Station Code / Name           : 1 / Nowhere",
+        "Orientation                   : NS", "Processing Info               : Acausal Butterworth bandpass filtering",
+        "Filter Cut-off Frequency (Hz) : 0.100 - 50.000", "Time Increment (s)            : 0.01",
+        "Number of Data                : 60", "PGA (m/s/s)                   : 1.0000000E+00",
+        "Accelaration time series in m/s/s",
+    ]  # fmt: skip
+    return joined(lines + fortran(tone(), 7, "{:14.7E}"), "\n")
+
+
+def worded() -> bytes:
+    """A step, a number and a unit in Spanish, and columns that the last line names; no time."""
+    lines = ["Laboratorio", "Estaci\u00f3n: NOWHERE", "Intervalo de muestreo (s): 0.01", "N\u00famero de muestras: 60",
+             "Unidades: cm/s^2", "        N00E        UPDO        N90E"]  # fmt: skip
+    rows = fortran(100.0 * np.repeat(tone(), 3), 3, "{:12.3f}")
+    return ("\n".join(lines + rows) + "\n").encode()
+
+
+def platform(unit: str = "cm/s/s") -> bytes:
+    """SCEC's Broadband Platform: the columns' names are a comment."""
+    head = ["# Sim stat=TEST", f"#    time(sec)      N-S({unit})      E-W({unit})      U-D({unit})"]
+    rows = [f"{DT * i:.6e}" + f"\t{100 * a:.3f}" * 3 for i, a in enumerate(tone())]
+    return joined(head + rows, "\n")
+
+
+def geocsv(unit: str = "M/S**2") -> bytes:
+    head = ["# dataset: GeoCSV 2.0", "# delimiter: ,", f"# field_unit: UTC, {unit}", "# SID: XX_TEST_00_HNZ",
+            "# sample_count: 60", "# sample_rate_hz: 100", "# start_time: 2001-01-01T00:00:59.5Z",
+            "# azimuth_deg: 0.0", "# dip_deg: -90.0", "Time, Sample"]  # fmt: skip
+    rows = [f"2001-01-01T00:{1 if i >= 50 else 0:02d}:{(59.5 + DT * i) % 60:09.6f}Z, {a:.7f}"
+            for i, a in enumerate(tone())]  # fmt: skip
+    return joined(head + rows, "\n")

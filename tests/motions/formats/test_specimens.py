@@ -37,6 +37,11 @@ EXPECTED = {
     "csmip-usc-v2": ("cm/s2", 0.01, [352.0], True, 100.0, 5e-4),
     "bhrc": ("g/10", 0.980665, [50.0, "up", 140.0], False, 1.0, 5e-7),
     "csmnc": ("cm/s2", 0.01, [90.0], False, 100.0, 5e-5),
+    "itaca-1": ("cm/s2", 0.01, [90.0], False, 100.0, 5e-7),
+    "series-of-words": ("m/s2", 1.0, [0.0], True, 1.0, 5e-8),
+    "columns-of-words": ("cm/s2", 0.01, [0.0, "up", 90.0], None, 100.0, 5e-4),
+    "columns-of-a-platform": ("cm/s2", 0.01, [0.0, 90.0, "up"], None, 100.0, 5e-4),
+    "geocsv": ("m/s2", 1.0, ["up"], None, 1.0, 5e-8),
 }
 
 
@@ -133,7 +138,17 @@ def test_cosmos_without_a_sensitivity_has_no_factor(read):
 
 @pytest.mark.parametrize(
     ("title", "said"),
-    [("A, 1/1/1999, B, UP", "up"), ("A, B, DWN", "down"), ("A, N60W", 300.0), ("A, VER", "VER"), ("nothing", None)],
+    [
+        ("A, 1/1/1999, B, UP", "up"),
+        ("A, B, DWN", "down"),
+        ("A, N60W", 300.0),
+        ("A, VER", "up"),
+        ("A, --V", "up"),
+        ("A, -UP", "up"),
+        ("PACOIMA DAM, 164 (CDMG STATION 279)", 164.0),
+        ("A, LONG", "LONG"),
+        ("nothing", None),
+    ],
 )
 def test_at2_orientations(read, title, said):
     assert read(hand.at2(title=title))[0].stats.kouros.orientation == said

@@ -117,3 +117,76 @@ def test_spectra_are_refused_as_such(tmp_path, title):
     (tmp_path / "a.v3").write_text(f"{title}\nmore\n")
     with pytest.raises(MotionError, match=r"holds (?:response and Fourier )?spectra.*give the file of"):
         open_traces(tmp_path / "a.v3", [])
+
+
+def test_the_first_sample_of_itaca_is_of_the_next_day():
+    """An earthquake at 23:59:09, and a clock of 00:00:10.5."""
+    assert traces(national.itaca(), "esm")[0].stats.starttime == obspy.UTCDateTime("1997-10-15T00:00:10.5")
+
+
+def test_geocsv_says_station_and_time():
+    first = traces(national.geocsv(), "columns")[0]
+    assert (first.id, first.stats.starttime) == ("XX.TEST.00.HNZ", obspy.UTCDateTime("2001-01-01T00:00:59.5"))
+
+
+def test_a_series_behind_its_number_and_step():
+    """eqsig and DEEPSOIL: "60 0.01", then values, or times and values; neither says a unit."""
+    rows = [f"{a:.7f}" for a in hand.tone()]
+    pairs = [f"{hand.DT * i:.2f} {row}" for i, row in enumerate(rows)]
+    for lines in (["Kobe, 1995", "60 0.01", *rows], ["60 0.01", *pairs]):
+        (trace,) = traces(hand.joined(lines), "columns")
+        assert (trace.stats.npts, trace.stats.delta, trace.stats.kouros.units) == (60, 0.01, "")
+        assert abs(trace.data - hand.tone()).max() < 1e-7
+
+
+def test_a_table_with_decimal_commas():
+    rows = [f"{hand.DT * i:.2f};{a:.5f}".replace(".", ",") for i, a in enumerate(hand.tone())]
+    (trace,) = traces("\n".join(["Zeit [s];Acc NS [m/s\u00b2]", *rows]).encode(), "columns")
+    assert (trace.stats.kouros.units, trace.stats.kouros.orientation) == ("m/s2", 0.0)
+    assert abs(trace.data - hand.tone()).max() < 6e-6
+
+
+def test_of_acceleration_velocity_and_displacement_the_first_is_taken():
+    """SeismoSignal's export; a velocity alone is refused."""
+    rows = [f"{hand.DT * i:.2f}\t{a:.6f}\t{9 * a:.6f}\t{a:.6f}" for i, a in enumerate(hand.tone())]
+    head = "Time [sec]\tAcceleration [g]\tVelocity [cm/sec]\tDisplacement [cm]"
+    (trace,) = traces(hand.joined([head, *rows]), "columns")
+    assert (trace.stats.kouros.units, trace.data[0]) == ("g", 1.0)
+
+
+@pytest.mark.parametrize(
+    ("content", "line", "words"),
+    [
+        (national.platform("cm/s"), 2, "holds velocity (cm/s), no acceleration"),
+        (national.geocsv("M/S"), 3, "holds velocity (m/s), no acceleration"),
+        (
+            national.series().replace(b"Data                : 60", b"Data                : 61"),
+            7,
+            "announces 61 samples",
+        ),
+        (national.series().replace(b"1.0000000E+00\n", b"9.8100000E+00\n", 1), 8, "9.81 m/s2, and the samples have 1"),
+        (national.worded().replace(b"Laboratorio", b"dt = 0.02"), 3, "says '0.01' for step, and line 1 '0.02'"),
+        (
+            national.platform().replace(b"# Sim", b"# dt: 0.02, sim"),
+            1,
+            "step of 0.02 s, and the times have one of 0.01",
+        ),
+    ],
+)
+def test_what_a_head_says_is_held_against_the_numbers(content, line, words):
+    with pytest.raises(FormatError) as refusal:
+        traces(content, "columns")
+    assert str(refusal.value).startswith(f"stream: line {line}: "), str(refusal.value)
+    assert words in str(refusal.value)
+
+
+def test_a_smc_of_unknown_kind_says_no_unit():
+    """PEA2SMC: fields of fourteen, and "0 UNKNOWN" for a title."""
+    lines = hand.smc().decode().splitlines()
+    data = [f"{a: .7E}".replace("E+0", "E+").replace("E-0", "E-").rjust(14) for a in hand.tone()]
+    lines = ["0 UNKNOWN", *lines[1:16], lines[16][:60] + f"{8:10d}" + lines[16][70:], *lines[17:29]]
+    content = hand.joined([*lines, *("".join(data[i : i + 5]) for i in range(0, 60, 5))])
+    (trace,) = traces(content, "smc")
+    said = trace.stats.kouros
+    assert (said.units, said.si_factor, said.processed) == ("", None, None)
+    assert abs(trace.data - hand.tone()).max() < 1e-7

@@ -1,0 +1,292 @@
+"""What the head of a table of numbers says in words: step, number, unit, orientation, time, raw or processed.
+
+A label, in one of six languages, stands before a colon or an equals sign, with its unit in brackets or behind the
+number: "Time Increment (s) : 0.005", "Tasa de muestreo: 200 Hz", "NPTS= 3000, DT= .01 SEC".  The last line may name the
+columns.  What is said in no such words is passed over; what two lines say differently is refused.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from pipeline.motions.formats import trace_headers
+from pipeline.motions.formats.record_text import Lines, shown
+from pipeline.motions.formats.trace_headers import FACTORS, Orientation
+
+_NUMBER = r"([+-]?(?:\d{1,9}(?:\.\d{0,12})?|\.\d{1,12})(?:[eE][+-]?\d{1,2})?)"
+
+
+def _label(words: str, value: str) -> re.Pattern[str]:
+    return re.compile(rf"(?<![\w.])(?:{words})(?:\s*[(\[]\s*([^()\[\]:=]{{1,20}}?)\s*[)\]])?\s*[:=]\s*{value}", re.I)
+
+
+_STEP = _label(
+    r"time (?:increment|step|interval)|(?:sampling|sample) (?:interval|period|step)|delta(?: ?t)?|dt|"
+    r"intervalo de muestreo|paso de tiempo|intervallo di campionamento|passo di campionamento|"
+    r"pas (?:de temps|d'.{1,2}chantillonnage)|abtastintervall|zeitschritt",
+    rf"{_NUMBER}\s*([a-z]{{1,8}})?",
+)
+_RATE = _label(
+    r"(?:sampling|sample)[ _](?:rate|freq(?:uency)?\.?)(?:_hz)?|sps|fs|(?:tasa|frecuencia|velocidad) de muestreo|"
+    r"frequenza di campionamento|fr.{1,2}quence d'.{1,2}chantillonnage|abtastrate",
+    _NUMBER,
+)
+_COUNT = _label(
+    r"(?:number|no\.?) of (?:data|points|samples|values)|npts|ndata|(?:num_?)?samples|sample[ _]count|"
+    r"n.{1,2}mero de (?:muestras|datos|puntos)|numero (?:di )?(?:dati|campioni|punti)|"
+    r"nombre de points|anzahl (?:der )?werte",
+    r"(\d{1,9})(?![.\d])",
+)
+_UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit", r"(\S.*)")
+_IN = re.compile(r"\bac\w{3,8}ation\b.{0,40}?\bin (?:units of )?(\S{1,12})\s*$", re.I)
+_TURN = _label(
+    r"orientation|comp\.?|component[eo]?|composante|komponente|orientaci.{1,2}n|direction|azimuth(?:_deg)?|stream",
+    r"(\S{1,12}(?: deg)?)",
+)
+_DIP = _label("dip(?:_deg)?", _NUMBER)
+_SID = _label("sid", r"([A-Z0-9]{0,8})_([A-Z0-9]{1,8})_([A-Z0-9]{0,8})_([A-Z0-9]_?[A-Z0-9]_?[A-Z0-9])\b")
+_STATION = _label(r"station(?: code)?|estaci.{1,2}n|stazione", r"(\w{2,8})(?=\s|,|$)")
+_START = _label(
+    r"start[ _]time|(?:time of )?(?:the )?first sample|(?:tiempo|hora) de la primera muestra",
+    r"(\d{4})[-/](\d\d)[-/](\d\d)[T ](\d\d):(\d\d):(\d\d(?:\.\d{1,9})?)\s?(?:Z|UTC|GMT)",
+)
+_PEAK = _label(r"pga|peak (?:ground )?acceleration", rf"{_NUMBER}\s*(\S{{1,10}})?")
+_PLACES = {"latitude": r"lat(?:itude?|itud|\.)?(?:_deg)?", "longitude": r"lon(?:gitude?|gitud|g?\.)?(?:_deg)?"}
+_PLACE = {key: _label(words, _NUMBER) for key, words in _PLACES.items()}
+_RAW = re.compile(r"\b(?:un(?:corrected|processed|filtered)|raw data|sin corregir)\b", re.I)
+_FILTERED = re.compile(r"\b(?:butterworth|band-?pass|high-?pass)\b|\bfilter\b.{0,40}[:=].*\d", re.I)
+
+_TIME = re.compile(r"^(?:time|t|zeit|tiempo|tempo|temps|seconds?|sec)$", re.I)
+_CELL = re.compile(r"^([^()\[\]]{1,40}?)\s*(?:[(\[]\s*([^()\[\]]{1,20}?)\s*[)\]])?$")
+_WORD = re.compile(r"[^\s()\[\]]+(?:[ ]?[(\[][^()\[\]]*[)\]])?")
+_PREFIX = re.compile(r"^(?:acc(?:el(?:eration)?)?|a)[ _.-]+", re.I)
+_SECONDS = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 0.001, "msec": 0.001}
+_OTHERS = {
+    **dict.fromkeys(("m/s", "cm/s", "mm/s", "in/s", "kine", "nm/s"), "velocity"),
+    **dict.fromkeys(("m", "cm", "mm", "in", "nm"), "displacement"),
+    **dict.fromkeys(("count", "counts", "digitalcounts"), "counts"),
+}
+_ALIKE = {"gals": "gal", "cm/s/s": "cm/s2", "m/s/s": "m/s2", "mm/s/s": "mm/s2", "g's": "g"}
+
+
+def unit_of(word: str) -> tuple[str, str]:
+    """Return what a unit is of, and how it is called here.
+
+    Parameters
+    ----------
+    word : str
+        Such as "cm/sec**2", "m/s²", "G", "cm/s".
+
+    Returns
+    -------
+    (str, str)
+        "acceleration" and one of `trace_headers.FACTORS`; "velocity", "displacement" or "counts" and the word; "" and
+        "" for what is no unit.
+    """
+    plain = re.sub(r"\s|\^|\*\*", "", word.strip().lower().rstrip(".")).replace("²", "2").replace("sec", "s")
+    plain = _ALIKE.get(plain, plain)
+    if plain in FACTORS:
+        return "acceleration", plain
+    return (_OTHERS[plain], plain) if plain in _OTHERS else ("", "")
+
+
+@dataclass
+class Column:
+    """A column as its head names it: its name, and what its unit is of, as `unit_of` says it."""
+
+    name: str
+    kind: str
+    unit: str
+    is_time: bool = False
+
+    @property
+    def orientation(self) -> Orientation:
+        """Of a component: what its name says, or the name."""
+        return turned(_PREFIX.sub("", self.name))
+
+
+@dataclass
+class Head:
+    """What a head says; None, or "", for what it does not.
+
+    Attributes
+    ----------
+    at : dict of str to int
+        The line that says each of the others, from 0.
+    step : float or None
+        In s.
+    count : int or None
+        Of samples.
+    kind, unit : str
+        As `unit_of`, of the samples.
+    orientation : float, str or None
+        Degrees clockwise from north, "up", "down" or the head's own word.
+    processed : bool or None
+        Whether the samples were filtered.
+    start : tuple of float, or None
+        Year to second of the first sample, where the head says that they are UTC.
+    peak : tuple of float, or None
+        The peak acceleration and one in its last digit, in m/s2.
+    code : tuple of str
+        Network, station, location and channel.
+    columns : tuple of Column
+        As the last line names them.
+    about : dict
+        Latitude and longitude.
+    """
+
+    at: dict[str, int] = field(default_factory=dict)
+    step: float | None = None
+    count: int | None = None
+    kind: str = ""
+    unit: str = ""
+    orientation: Orientation = None
+    processed: bool | None = None
+    start: tuple[float, ...] | None = None
+    peak: tuple[float, float] | None = None
+    code: tuple[str, str, str, str] = ("", "", "", "")
+    columns: tuple[Column, ...] = ()
+    about: dict[str, float] = field(default_factory=dict)
+
+    def says(self, lines: Lines, index: int, key: str, value: Any) -> None:
+        """Take what a line says.
+
+        Raises
+        ------
+        FormatError
+            Where another line says something else.
+        """
+        known = getattr(self, key)
+        if key in self.at and known != value:
+            wrong = f"says {shown(str(value))} for {key}, and line {self.at[key] + 1} {shown(str(known))}"
+            raise lines.error(index, wrong, "find out which is right, and mend the other")
+        setattr(self, key, value)
+        self.at.setdefault(key, index)
+
+
+def turned(word: str) -> Orientation:
+    """What a word says of an orientation, a channel's code of SEED included; else the word itself."""
+    said = trace_headers.component(word)[0]
+    if points(said):
+        return said
+    coded = trace_headers.seed_orientation(word.upper())
+    return said if coded is None else coded
+
+
+def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Head:
+    """Return what the lines before the numbers say.
+
+    Parameters
+    ----------
+    lines, top : Lines, int
+        The file, and its first row of numbers, from 0.
+    width, separator : int, str or None
+        Cells of a row, and what parts them; None for blanks.
+
+    Returns
+    -------
+    Head
+
+    Raises
+    ------
+    FormatError
+        Where two lines contradict each other.
+    """
+    head = Head()
+    texts = [_text(lines.lines[index]) for index in range(top)]
+    for index, text in enumerate(texts):
+        _numbers(lines, index, text, head)
+        _words(lines, index, text, head)
+    raw, filtered = (any(pattern.search(text) for text in texts) for pattern in (_RAW, _FILTERED))
+    head.processed = filtered if raw != filtered else None
+    last = next((index for index in reversed(range(top)) if texts[index].strip("#%*;| ")), None)
+    if last is not None:
+        head.columns = columns_of(texts[last], width, separator)
+        head.at["columns"] = last
+    return head
+
+
+def columns_of(text: str, width: int, separator: str | None) -> tuple[Column, ...]:
+    """Return the columns that a line names, none where it does not name so many."""
+    text = text.lstrip("#%*| \ufeff").strip().rstrip(separator)
+    cells = [cell.strip().strip('"').strip() for cell in (text.split(separator) if separator else _WORD.findall(text))]
+    found = [_CELL.match(cell) for cell in cells]
+    if len(cells) != width or not all(found):
+        return ()
+    columns = []
+    for number, one in enumerate(found):
+        name, word = (one[1], one[2] or "") if one else ("", "")
+        is_time = number == 0 and bool(_TIME.match(name)) and (not word or word.lower() in _SECONDS)
+        kind, unit = ("", word.lower()) if is_time else unit_of(word)
+        columns.append(Column(name, kind, unit, is_time))
+    # A sentence may have as many words as a row has numbers: a time, units or directions tell names from it.
+    pointing = sum(points(one.orientation) for one in columns)
+    named = columns[0].is_time or any(one.kind for one in columns) or 2 * pointing > len(columns)
+    return tuple(columns) if named and not any(":" in one.name or "=" in one.name for one in columns) else ()
+
+
+def points(said: Orientation) -> bool:
+    """Whether what was said is an orientation, and no word."""
+    return isinstance(said, float) or said in {"up", "down"}
+
+
+def seconds(word: str | None) -> float:
+    """How many seconds one of a unit of time is; 1 for what is none, or left out."""
+    return _SECONDS.get((word or "").strip().lower(), 1.0)
+
+
+def _text(raw: bytes) -> str:
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError:
+        text = raw.decode("latin-1")
+    return "".join(letter if letter.isprintable() else " " for letter in text).rstrip()
+
+
+def _numbers(lines: Lines, index: int, text: str, head: Head) -> None:
+    if found := _STEP.search(text):
+        head.says(lines, index, "step", seconds(found[3] or found[1]) * float(found[2]))
+    elif (found := _RATE.search(text)) and float(found[2]) > 0.0:
+        head.says(lines, index, "step", 1.0 / float(found[2]))
+    if found := _COUNT.search(text):
+        head.says(lines, index, "count", int(found[2]))
+    if (found := _PEAK.search(text)) and (unit := unit_of(found[1] or found[3] or ""))[0] == "acceleration":
+        mantissa, _, power = found[2].lower().partition("e")
+        digit = 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))
+        head.says(lines, index, "peak", (FACTORS[unit[1]] * abs(float(found[2])), FACTORS[unit[1]] * digit))
+    for key, pattern in _PLACE.items():
+        if found := pattern.search(text):
+            head.about.setdefault(key, float(found[2]))
+
+
+def _words(lines: Lines, index: int, text: str, head: Head) -> None:
+    for word in _units(text):
+        kind, unit = unit_of(word)
+        if kind:
+            head.says(lines, index, "unit", unit)
+            head.kind = kind
+            break
+    if found := _SID.search(text):
+        network, station, location, channel = found.groups()[1:]
+        head.says(lines, index, "code", (network, station, location, channel.replace("_", "")))
+    elif (found := _STATION.search(text)) and not head.code[1]:
+        head.says(lines, index, "code", ("", found[2], "", ""))
+    if (found := _DIP.search(text)) and abs(abs(float(found[2])) - 90.0) < 1e-6:
+        head.orientation = "up" if float(found[2]) < 0.0 else "down"
+        head.at["orientation"] = index
+    elif (found := _TURN.search(text)) and head.orientation not in {"up", "down"}:
+        head.says(lines, index, "orientation", turned(found[2].rstrip(",;")))
+    if found := _START.search(text):
+        head.says(lines, index, "start", tuple(map(float, found.groups()[1:])))
+
+
+def _units(text: str) -> Iterable[str]:
+    if found := _UNIT.search(text):
+        # GeoCSV says the unit of each column, the time's first.
+        yield found[2].rpartition(",")[2]
+        yield found[2].split("  ")[0]
+    if found := _IN.search(text):
+        yield found[1]
