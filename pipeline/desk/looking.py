@@ -6,7 +6,6 @@ from itertools import islice
 from math import ceil
 from typing import Any
 
-from pipeline.analysis.classify import object_classes
 from pipeline.analysis.house.questions import VOCABULARIES
 from pipeline.analysis.house.rule import CRITERIA, QUANTITIES, HouseRule, Span
 from pipeline.analysis.survey import field_asked, measurables
@@ -101,9 +100,9 @@ def object_context(
         "decisions": _decided(facts, run), "cells": cells(facts, run.units),
         "recorded": _recorded(facts, run), "problem": problem, "typed": typed,
         "section": section or query.get("open", ""), "saved": query.get("saved", ""),
-        "measures": installable, "measure": measure,
-        "parameters": parameters(asked, facts, measure), "classes": sorted(object_classes(), key=class_title),
-        "class_told": class_title, "word_told": word_told,
+        "measures": tuple((name, said(one.row.title)) for name, one in installable.items()), "measure": measure,
+        "parameters": parameters(asked, facts, measure), "classes": run.class_titles,
+        "word_told": word_told, "fragment": asked.site.fragment,
         "findings": _findings(facts), "neighbours": _beside(run, listed), "several_levels": run.several,
     }  # fmt: skip
 

@@ -234,14 +234,17 @@ def site_folder(home: Path, name: str) -> Path:
     return resource("site_motions", name) if name in BUNDLED else home / Path(name).expanduser()
 
 
-def open_workspace(settings: "Settings") -> Workspace:
-    """Open the database, bringing its tables to the newest schema; in a dry run it can only be read."""
+def open_workspace(settings: "Settings", *, keeping: int = 0) -> Workspace:
+    """Open the database, bringing its tables to the newest schema; in a dry run it can only be read.
+
+    keeping : how many connections wait to be used again (see `open_database`)
+    """
     from pipeline.collection.database import open_database
     from pipeline.store import migrate
 
     if settings.rehearsal is not None:
         return Workspace(settings, read_only(settings, settings.rehearsal))
-    engine = open_database(settings.database)
+    engine = open_database(settings.database, keeping=keeping)
     migrate.upgrade(engine)
     return Workspace(settings, engine)
 
