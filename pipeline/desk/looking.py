@@ -24,7 +24,7 @@ from pipeline.records import DecisionKind, Support, in_force
 from pipeline.report.language import _, said
 from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.decided import Decided
-from pipeline.report.pages.errand_views import spanned, trade_word
+from pipeline.report.pages.errand_views import priced, spanned, title_of, trade_word
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.views import STATES, DecisionView, State
 from pipeline.report.units import Units
@@ -253,8 +253,8 @@ def errands(asked: Asked) -> DeskAnswer:
     shown = chosen[_ERRANDS_SHOWN * (page - 1) : _ERRANDS_SHOWN * page]
     context = {
         "entries": shown, "page": page, "more": len(chosen) > _ERRANDS_SHOWN * page, "count": len(chosen),
-        "gallery": gallery, "whose": whose, "state": state, "lasting": lasting, "trade_word": trade_word, "told": said,
-        "galleries": sorted({e.errand.gallery for e in every}, key=sorting_key),
+        "gallery": gallery, "whose": whose, "state": state, "lasting": lasting, "trade_word": trade_word,
+        "title_of": title_of, "galleries": sorted({e.errand.gallery for e in every}, key=sorting_key),
         "people": sorted({e.whose for e in every if e.whose}),
         "plan": run.plan, "done": sum(e.state == "done" for e in chosen),
     }  # fmt: skip
@@ -302,8 +302,9 @@ def errand_context(
     installable = entry.errand.measure in asked.site.workspace.measures.installable
     return {
         "entry": entry, "rows": rows, "installable": installable and not entry.errand.prepares, "problem": problem,
-        "typed": dict(typed or {}), "spanned": spanned, "hours": _hours(entry.errand.hours),
-        "trade_word": trade_word, "told": said,
+        "typed": dict(typed or {}), "hours": _hours(entry.errand.hours),
+        "cost": priced(spanned(entry.errand.cost), asked.site.workspace.plan_terms.currency),
+        "trade_word": trade_word, "title_of": title_of,
         "saved": asked.query.get("saved", ""),
     }  # fmt: skip
 

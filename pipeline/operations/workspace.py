@@ -151,7 +151,8 @@ class Workspace:
 
         wanted = self.settings.plan
         own = self._own(wanted.efforts, "[plan] efforts names the file of what measures take you")
-        return PlanTerms(efforts(own, self.measures), EffortLimits(wanted.hours or None, wanted.cost or None))
+        limits = EffortLimits(wanted.hours or None, wanted.cost or None)
+        return PlanTerms(efforts(own, self.measures), limits, wanted.currency)
 
     def object_index(self) -> "ObjectIndex":
         """Return the objects of the inventory as it is now."""
