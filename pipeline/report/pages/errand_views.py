@@ -143,6 +143,8 @@ def plan_view(plan: ErrandPlan, *, linked: bool = True, sentences: bool = True) 
     """
     walking = not plan.terms.limits.open
     first = plan.best_first
+    # As on the first page of the report, nobody begins with what hardly stands as it is recorded.
+    sound = [at for at in first if not plan.errands[at].check]
     listed = sorted(first[:SHOWN]) if walking else first[:SHOWN]
     away = sorted(plan.away, key=lambda at: (-plan.errands[at].avoided, at))
     views = {at: _errand(plan, at, linked=linked, sentences=sentences) for at in (*listed, *away[:DOUBTFUL])}
@@ -156,7 +158,7 @@ def plan_view(plan: ErrandPlan, *, linked: bool = True, sentences: bool = True) 
             (_TRADES[trade](), count(sum(one.trade == trade for one in plan.chosen)), spanned(hours))
             for trade, hours in plan.by_trade.items()
         ),
-        begin=tuple(_begun(plan, places, linked=linked) for places in plan.together(first)[:BEGIN]),
+        begin=tuple(_begun(plan, places, linked=linked) for places in plan.together(sound)[:BEGIN]),
         errands=tuple(views[at] for at in listed),
         walking=walking,
         hidden=len(first) - len(listed),
