@@ -121,7 +121,7 @@ def desk_app(config: Path, serving: ServeSettings | None = None) -> Guard:
         Route("/sign-out", pages.sign_out, methods=["POST"]),
     ]
     handlers: Any = {404: pages.lost, 405: pages.lost, BodyTooLongError: pages.too_long, Exception: pages.broken}
-    return Guard(Starlette(routes=routes, exception_handlers=handlers), pages.site.serving)
+    return Guard(Starlette(routes=routes, exception_handlers=handlers), pages.site.serving, pages.site.close)
 
 
 class _Pages:

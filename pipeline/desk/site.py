@@ -51,6 +51,10 @@ class DeskSite:
         self._log: dict[str, tuple[Decision, ...]] = {}
         self._words: dict[str, tuple[ErrandWord, ...]] = {}
 
+    def close(self) -> None:
+        """Close the connections that wait to be used again."""
+        self.workspace.engine.dispose()
+
     @property
     def run(self) -> RunFacts:
         """The newest run, and the settings of now.
