@@ -101,6 +101,7 @@ COLUMN_WORDS = {
     "open_for": "the parameter whose measurement alone may change what is decided; `class` for what it is",
     "worth": "by how much that measurement lowers the expected loss, as a share of the loss by harm",
     "expected_loss": "probability times what is at stake, in objects of class C",
+    "check_sizes": "whether its sizes are to be checked before anything is done: it hardly stands like that",
     "median_is": "empty where the median was found; above, below: it is only a bound; flat: no curve tells it",
     "dispersion": "of the fragility curve, lognormal",
     "median_pgv_m_s": "the same median in peak velocity, in m/s",

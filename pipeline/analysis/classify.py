@@ -27,7 +27,7 @@ from pipeline.analysis.usual import clearance_of, friction_of, own_damping, wall
 from pipeline.models import MODELS, model_named
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
-from pipeline.records import Estimate, Item, Origin, Scene, Support
+from pipeline.records import Estimate, Item, Origin, Scene, Support, too_thin
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
 
@@ -470,9 +470,7 @@ def _unheld(item: Item, support: Support) -> list[str]:
     times = item.height_m / min(plan)
     if times <= SLENDEREST:
         return []
-    return [
-        f"support (it is {times:.0f} times as high as it is deep: it cannot stand by itself, or a measure is wrong)"
-    ]
+    return [too_thin(times)]
 
 
 @cache

@@ -191,6 +191,11 @@ def expected_loss(assessment: Assessment) -> float:
     return found.probability * value_of(assessment.scene) + falls * danger_of(assessment.scene)
 
 
+def to_check(assessment: Assessment) -> bool:
+    """Say whether the record of an object is to be checked before anything is done about it."""
+    return assessment.likelihood is not None and doubtful(assessment.scene) > 0.0
+
+
 def doubtful(scene: Scene) -> float:
     """Return how many times as high as it is deep an object is whose record is to be looked at first; else 0.
 

@@ -131,7 +131,7 @@ def _together(plan: "ErrandPlan") -> list[tuple[str, str]]:
 
     What is done in one gallery, or in one case of it, by one measure is one line.
     """
-    from pipeline.report.pages.errand_views import number
+    from pipeline.report.pages.errand_views import number, priced, title_of
 
     ranked = plan.best_first
     lines = []
@@ -144,8 +144,8 @@ def _together(plan: "ErrandPlan") -> list[tuple[str, str]]:
         share = sum(one.avoided for one in some) / plan.loss if plan.loss > 0.0 else 0.0
         first = "" if one.needs is None else f", after: {plan.errands[one.needs].title}"
         where = f"case {one.case}: " if one.case else ""
-        effort = f"{number(hours)} h {one.trade}, cost {number(cost)}; avoids {share:.2%}"
-        lines.append((one.gallery, f"{where}{one.title}{first}: {', '.join(numbers[:_NAMED])}{more}; {effort}"))
+        effort = f"{number(hours)} h {one.trade}, cost {priced(number(cost), plan.terms.currency)}; avoids {share:.2%}"
+        lines.append((one.gallery, f"{where}{title_of(one)}{first}: {', '.join(numbers[:_NAMED])}{more}; {effort}"))
     return lines
 
 

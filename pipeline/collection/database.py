@@ -8,6 +8,7 @@ import sqlite3
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -15,8 +16,8 @@ from urllib.parse import quote
 
 from sqlalchemy import Engine, MetaData, create_engine, event
 from sqlalchemy.engine import URL, ExceptionContext, make_url
-from sqlalchemy.exc import ArgumentError, OperationalError
-from sqlalchemy.pool import NullPool
+from sqlalchemy.exc import ArgumentError, DisconnectionError, OperationalError
+from sqlalchemy.pool import NullPool, QueuePool
 
 from pipeline.errors import InputError, KourosError
 
@@ -68,16 +69,33 @@ def database_url(where: str | Path) -> URL:
     return url.set(drivername="postgresql+psycopg") if url.drivername == "postgresql" else url
 
 
-def open_database(where: str | Path) -> Engine:
-    """Open Kouros's own database, making the folder of an SQLite file where it is missing."""
+def open_database(where: str | Path, *, keeping: int = 0) -> Engine:
+    """Open Kouros's own database, making the folder of an SQLite file where it is missing.
+
+    Parameters
+    ----------
+    where : str or Path
+        Its path, or its URL.
+    keeping : int
+        How many connections wait to be used again, for who answers many small questions.  By default a connection is
+        opened for each piece of work and closed after it: a night holds none while it computes.
+    """
     url = database_url(where)
-    if url.get_backend_name() == "sqlite" and url.database:
+    lite = url.get_backend_name() == "sqlite"
+    if lite and url.database:
         Path(url.database).parent.mkdir(parents=True, exist_ok=True)
-    # A connection is opened for each piece of work and closed after it: a night holds none while it computes.
-    engine = create_engine(url, poolclass=NullPool)
-    if url.get_backend_name() == "sqlite":
+    if keeping:
+        # What SQLite keeps open is looked at by `_same_file`; a server may have ended a connection.
+        engine = create_engine(
+            url, poolclass=QueuePool, pool_size=keeping, max_overflow=-1, pool_use_lifo=True, pool_pre_ping=not lite
+        )
+    else:
+        engine = create_engine(url, poolclass=NullPool)
+    if lite:
         event.listen(engine, "connect", _prepare_sqlite)
         event.listen(engine, "handle_error", _say_no_room)
+        if keeping:
+            event.listen(engine, "checkout", partial(_same_file, Path(str(url.database))))
     return engine
 
 
@@ -243,6 +261,17 @@ def _settled_apart(file: Path) -> "TemporaryDirectory[str]":
         folder.cleanup()
         raise
     return folder
+
+
+def _same_file(file: Path, _connection: Any, record: Any, _proxy: Any) -> None:
+    """Have a kept connection opened again where another file has taken the place of its own, as a backup does."""
+    try:
+        there = file.stat()
+    except FileNotFoundError:
+        there = None
+    now = None if there is None else (there.st_dev, there.st_ino)
+    if record.info.setdefault("file", now) != now:
+        raise DisconnectionError
 
 
 def _prepare_sqlite(connection: Any, _record: Any) -> None:

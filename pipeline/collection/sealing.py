@@ -5,6 +5,7 @@ A sealed table has a column `seal`, of all the other values of its row as they l
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cache
 from hashlib import blake2b
 from typing import Any
 
@@ -14,6 +15,7 @@ from sqlalchemy import (
     ColumnElement,
     Connection,
     LargeBinary,
+    Select,
     String,
     Table,
     Text,
@@ -121,7 +123,7 @@ def sealed(table: Table, row: Mapping[str, Any]) -> dict[str, Any]:
 
 def sound_rows(connection: Connection, table: Table, condition: ColumnElement[bool]) -> tuple[list[Any], list[str]]:
     """Return the rows of a table with a primary key of text that are what was written, and the keys of the others."""
-    wanted = select(*_sealed(table), table.c.seal).where(condition)
+    wanted = _whole(table).where(condition)
     (key,) = table.primary_key.columns
     try:
         rows: Sequence[Any] = connection.execute(wanted).all()
@@ -156,6 +158,12 @@ def require_sound(connection: Connection, table: Table, condition: ColumnElement
         raise DamagedRowsError(table.name, found, connection.engine.url.render_as_string(hide_password=True))
 
 
+@cache
+def _whole(table: Table) -> Select[Any]:
+    return select(*_sealed(table), table.c.seal)
+
+
+@cache
 def _sealed(table: Table) -> list[Column[Any]]:
     # By name: tables that were changed by migrations have their columns in another order.
     return sorted((column for column in table.columns if column.name != "seal"), key=lambda column: column.name)

@@ -1,10 +1,12 @@
 """The site: which page answers which address, who may, and what every page has in common."""
 
 import logging
+import secrets
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from anyio import CapacityLimiter, to_thread
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import UploadFile
@@ -31,7 +33,8 @@ from pipeline.desk.guard import (
     named_cookie,
     person,
 )
-from pipeline.desk.site import DeskSite
+from pipeline.desk.kept_pages import KeptPages
+from pipeline.desk.site import AT_ONCE, DeskSite
 from pipeline.errors import KourosError
 from pipeline.operations.event_log import note
 from pipeline.report.language import speaking
@@ -73,6 +76,19 @@ _LOOKED: Mapping[str, Page] = {
     "/house": looking.house,
     "/house/fields": looking.house_fields,
 }
+_KEPT = frozenset(
+    {
+        looking.search, looking.object_page, looking.galleries, looking.survey, looking.errands, looking.errand_page,
+    }
+)  # fmt: skip
+"""Pages that rest on nothing but `DeskSite.state`, who asks, and what for."""
+
+_KEPT_CHARACTERS = 20_000_000
+"""Of pages that are kept: some thousand of them."""
+
+_TOKEN = secrets.token_hex(32)
+"""What stands in a page for the token of whoever asks for it."""
+
 _SAID: Mapping[str, Page] = {
     "/object/decide": saying.say_decision,
     "/object/measured": saying.say_measured,
@@ -105,7 +121,7 @@ def desk_app(config: Path, serving: ServeSettings | None = None) -> Guard:
         Route("/sign-out", pages.sign_out, methods=["POST"]),
     ]
     handlers: Any = {404: pages.lost, 405: pages.lost, BodyTooLongError: pages.too_long, Exception: pages.broken}
-    return Guard(Starlette(routes=routes, exception_handlers=handlers), pages.site.serving)
+    return Guard(Starlette(routes=routes, exception_handlers=handlers), pages.site.serving, pages.site.close)
 
 
 class _Pages:
@@ -114,6 +130,8 @@ class _Pages:
     def __init__(self, site: DeskSite) -> None:
         self.site = site
         self._attempts = Attempts()
+        self._filled = CapacityLimiter(AT_ONCE)
+        self._kept = KeptPages(_KEPT_CHARACTERS)
 
     def looking(self, page: Page) -> Callable[[Request], Any]:
         """Return what answers with a page that only shows."""
@@ -124,9 +142,12 @@ class _Pages:
                 return self._unknown(request)
             query = {name: text[:2_000] for name, text in request.query_params.items()}
             asked = Asked(self.site, who, query, fragment="hx-request" in request.headers)
-            return self._answered(request, asked, page)
+            return self._answered(request, asked, page, kept=page in _KEPT)
 
-        return answer
+        async def waiting(request: Request) -> Response:
+            return await to_thread.run_sync(answer, request, limiter=self._filled)
+
+        return waiting
 
     def saying(self, page: Page) -> Callable[[Request], Any]:
         """Return what takes a form."""
@@ -153,15 +174,22 @@ class _Pages:
 
         return answer
 
-    def _answered(self, request: Request, asked: Asked, page: Page) -> Response:
+    def _answered(self, request: Request, asked: Asked, page: Page, *, kept: bool = False) -> Response:
         try:
-            run = self.site.run
-            with speaking(run.language):
+            state = self.site.state if kept else None
+            key = (page, tuple(asked.query.items()), asked.fragment, asked.who)
+            known = self._kept.get(state, key) if kept else None
+            if known is not None:
+                return self._with_token(request, asked.who, known, 200)
+            with speaking(self.site.run.language):
                 answer = page(asked)
                 if answer.to:
                     note("desk", who=asked.name, path=request.url.path, object=asked.form.get("number", ""))
                     return self._remembered(RedirectResponse(answer.to, 303), asked)
-                return self._page(request, asked.who, answer)
+                text = self._filled_in(request, asked.who, answer)
+            if kept:
+                self._kept.keep(state, key, text)
+            return self._with_token(request, asked.who, text, answer.status)
         except NotThereError as problem:
             return self._told(request, asked.who, str(problem), 404)
         except KourosError as problem:
@@ -169,17 +197,24 @@ class _Pages:
             return self._told(request, asked.who, str(problem), 503)
 
     def _page(self, request: Request, who: Person | None, answer: DeskAnswer) -> Response:
+        return self._with_token(request, who, self._filled_in(request, who, answer), answer.status)
+
+    def _filled_in(self, request: Request, who: Person | None, answer: DeskAnswer) -> str:
         site = self.site
-        seed, fresh = form_seed(request, who)
         env = getattr(site, "environment", None) or environment()
         context: dict[str, Any] = {
-            "who": who, "token": form_token(seed), "htmx": HTMX, "here": request.url.path,
+            "who": who, "token": _TOKEN, "htmx": HTMX, "here": request.url.path,
             "museum": site.workspace.settings.museum.name, "identity": site.serving.identity, "problem": "",
             "saved": "", "run": None, "shaken": False,
         }  # fmt: skip
         if answer.template not in ("sign_in.html", "told.html"):
             context |= {"run": site.run, "shaken": site.events.there}
-        response = HTMLResponse(fill(env, f"desk/{answer.template}", context | dict(answer.context)), answer.status)
+        return fill(env, f"desk/{answer.template}", context | dict(answer.context))
+
+    def _with_token(self, request: Request, who: Person | None, text: str, status: int) -> Response:
+        """Return a page with the token of the browser that it goes to."""
+        seed, fresh = form_seed(request, who)
+        response = HTMLResponse(text.replace(_TOKEN, form_token(seed)), status)
         if fresh:
             self._cookie(response, FORM_COOKIE, seed)
         return response

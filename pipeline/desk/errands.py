@@ -39,6 +39,7 @@ def errand_key(errand: Errand) -> str:
     """Return what an errand is known by from night to night: place, measure, and the object where it is in no case."""
     alone = "" if errand.case else errand.objects[0].object_number
     told = "\0".join((errand.gallery, errand.case, errand.measure, str(errand.needs is not None), alone))
+    told += "\0check" if errand.check and errand.case else ""
     return hashlib.sha256(told.encode("utf-8", "surrogatepass")).hexdigest()[:20]
 
 

@@ -60,8 +60,8 @@ class Person:
 class Guard:
     """The outermost layer of the site (ASGI): refuses strange hosts, peers, origins and lengths; adds headers."""
 
-    def __init__(self, app: Any, settings: ServeSettings) -> None:
-        self._app, self._settings = app, settings
+    def __init__(self, app: Any, settings: ServeSettings, close: Callable[[], None]) -> None:
+        self._app, self._settings, self.close = app, settings, close
         self._hosts = {*LOCAL, *(urlsplit(one).hostname or "" for one in settings.addresses)}
         if not _everywhere(settings.host):
             self._hosts.add(settings.host)

@@ -6,7 +6,6 @@ from itertools import islice
 from math import ceil
 from typing import Any
 
-from pipeline.analysis.classify import object_classes
 from pipeline.analysis.house.questions import VOCABULARIES
 from pipeline.analysis.house.rule import CRITERIA, QUANTITIES, HouseRule, Span
 from pipeline.analysis.survey import field_asked, measurables
@@ -25,7 +24,7 @@ from pipeline.records import DecisionKind, Support, in_force
 from pipeline.report.language import _, said
 from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.decided import Decided
-from pipeline.report.pages.errand_views import spanned, trade_word
+from pipeline.report.pages.errand_views import priced, spanned, title_of, trade_word
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.views import STATES, DecisionView, State
 from pipeline.report.units import Units
@@ -101,9 +100,9 @@ def object_context(
         "decisions": _decided(facts, run), "cells": cells(facts, run.units),
         "recorded": _recorded(facts, run), "problem": problem, "typed": typed,
         "section": section or query.get("open", ""), "saved": query.get("saved", ""),
-        "measures": installable, "measure": measure,
-        "parameters": parameters(asked, facts, measure), "classes": sorted(object_classes(), key=class_title),
-        "class_told": class_title, "word_told": word_told,
+        "measures": tuple((name, said(one.row.title)) for name, one in installable.items()), "measure": measure,
+        "parameters": parameters(asked, facts, measure), "classes": run.class_titles,
+        "word_told": word_told, "fragment": asked.site.fragment,
         "findings": _findings(facts), "neighbours": _beside(run, listed), "several_levels": run.several,
     }  # fmt: skip
 
@@ -254,8 +253,8 @@ def errands(asked: Asked) -> DeskAnswer:
     shown = chosen[_ERRANDS_SHOWN * (page - 1) : _ERRANDS_SHOWN * page]
     context = {
         "entries": shown, "page": page, "more": len(chosen) > _ERRANDS_SHOWN * page, "count": len(chosen),
-        "gallery": gallery, "whose": whose, "state": state, "lasting": lasting, "trade_word": trade_word, "told": said,
-        "galleries": sorted({e.errand.gallery for e in every}, key=sorting_key),
+        "gallery": gallery, "whose": whose, "state": state, "lasting": lasting, "trade_word": trade_word,
+        "title_of": title_of, "galleries": sorted({e.errand.gallery for e in every}, key=sorting_key),
         "people": sorted({e.whose for e in every if e.whose}),
         "plan": run.plan, "done": sum(e.state == "done" for e in chosen),
     }  # fmt: skip
@@ -303,8 +302,9 @@ def errand_context(
     installable = entry.errand.measure in asked.site.workspace.measures.installable
     return {
         "entry": entry, "rows": rows, "installable": installable and not entry.errand.prepares, "problem": problem,
-        "typed": dict(typed or {}), "spanned": spanned, "hours": _hours(entry.errand.hours),
-        "trade_word": trade_word, "told": said,
+        "typed": dict(typed or {}), "hours": _hours(entry.errand.hours),
+        "cost": priced(spanned(entry.errand.cost), asked.site.workspace.plan_terms.currency),
+        "trade_word": trade_word, "title_of": title_of,
         "saved": asked.query.get("saved", ""),
     }  # fmt: skip
 

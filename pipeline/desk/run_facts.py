@@ -6,10 +6,12 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import itemgetter
 from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from pipeline.analysis.classify import object_classes
 from pipeline.analysis.house.questions import MANY, stated_by
 from pipeline.analysis.survey import field_asked
 from pipeline.desk.errors import DeskError
@@ -21,6 +23,7 @@ from pipeline.records import Page, RunRecord
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.plan_files import gathered_from
 from pipeline.report.files.walk_sheet import sheet_file
+from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.compose import page_name
 from pipeline.report.pages.describe import Sayings
 from pipeline.report.pages.views import State
@@ -143,6 +146,11 @@ class RunFacts:
             open_ones[kind, stated_by(field_asked(parameter, missing))] += count
         many = [(kind, states, count) for (kind, states), count in open_ones.items() if states and count >= MANY]
         return tuple(sorted(many, key=lambda one: (-one[2], one[0], one[1])))
+
+    @cached_property
+    def class_titles(self) -> tuple[tuple[str, str], ...]:
+        """All classes of objects with what people call them, in the order of that."""
+        return tuple(sorted(((name, class_title(name)) for name in object_classes()), key=itemgetter(1)))
 
     @cached_property
     def states(self) -> Counter[str]:

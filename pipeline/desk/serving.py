@@ -66,7 +66,7 @@ def server_of(config: Path, host: str | None, port: int | None) -> tuple[uvicorn
     name = f"[{shown[0]}]" if ":" in shown[0] else shown[0]
     logging.getLogger("uvicorn.access").disabled = True
     # What a client says of another address it came by is not believed: whom to trust is for the guard.
-    server = uvicorn.Server(
+    server = _DeskServer(
         uvicorn.Config(
             app, proxy_headers=False, server_header=False, log_level="warning", lifespan="off", access_log=False,
             timeout_keep_alive=15, timeout_graceful_shutdown=1, limit_concurrency=1_000,
@@ -74,6 +74,15 @@ def server_of(config: Path, host: str | None, port: int | None) -> tuple[uvicorn
         )
     )  # fmt: skip
     return server, listening, f"http://{name}:{shown[1]}/"
+
+
+class _DeskServer(uvicorn.Server):
+    """Closes the connections to the database when it ends."""
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """End the answers that are under way, then the site."""
+        await super().shutdown(sockets)
+        self.config.app.close()  # type: ignore[union-attr]
 
 
 def _require_somebody(settings: Settings, asked: ServeSettings) -> None:

@@ -16,7 +16,7 @@ from pipeline.event.found import NOTE_LIMIT, STATES, FoundObject, distance_said
 from pipeline.report.language import said
 from pipeline.report.pages.event_page import told_of
 from pipeline.report.text import short
-from pipeline.report.units import Units
+from pipeline.report.units import Units, percent
 from pipeline.store.event_reports import EventReport, add_event_reports
 from pipeline.tools.decisions import person_here
 from pipeline.tools.event import answer_again
@@ -191,7 +191,7 @@ def _shared(asked: Asked, facts: EventFacts, query: Mapping[str, str], problem: 
 
 def _object(one: ObjectAnswer, at: int, facts: EventFacts, units: Units) -> ShakenObject:
     reports = facts.found(one.number)
-    chance = "" if one.probability is None or one.reported else f"{100.0 * one.probability:.0f}\u00a0%"
+    chance = "" if one.probability is None or one.reported else percent(one.probability)
     return ShakenObject(
         at, one.number, short(one.title), one.case, told_of(one), chance, one.make_safe, one.aftershock,
         tuple(_view(report, units) for report in reports), reports[-1].id if reports else 0,

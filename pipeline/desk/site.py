@@ -10,7 +10,7 @@ from pipeline.desk.object_facts import ObjectDesk, ObjectFacts
 from pipeline.desk.run_facts import RunFacts
 from pipeline.operations.workspace import Workspace, open_workspace
 from pipeline.records import Decision
-from pipeline.report.pages.environment import environment
+from pipeline.report.pages.environment import environment, fragments
 from pipeline.settings import load_settings
 from pipeline.settings.serve import ServeSettings
 from pipeline.store.decisions import read_decisions
@@ -18,6 +18,9 @@ from pipeline.store.desk import ErrandWord, errand_words, newest_ids
 from pipeline.store.reuse import whole_runs
 
 logger = logging.getLogger(__name__)
+
+AT_ONCE = 4
+"""Pages that are filled in at a time: Python computes one after the other, and more only get in each other's way."""
 
 LOOK = 2.0
 """Seconds after which it is looked whether there is a newer run."""
@@ -37,16 +40,20 @@ class DeskSite:
     def __init__(self, config: Path, serving: ServeSettings | None = None) -> None:
         self.config = config
         self._changed = config.stat().st_mtime_ns
-        self.workspace: Workspace = open_workspace(load_settings(config))
+        self.workspace: Workspace = open_workspace(load_settings(config), keeping=AT_ONCE)
         self.serving = serving or self.workspace.settings.serve
         self.objects = ObjectDesk()
         self.events = EventDesk(self.workspace)
         self._lock = Lock()
         self._looked = 0.0
         self._run: RunFacts | None = None
-        self._ids: tuple[int, ...] = (-1,)
+        self._read: tuple[int, ...] = ()
         self._log: dict[str, tuple[Decision, ...]] = {}
         self._words: dict[str, tuple[ErrandWord, ...]] = {}
+
+    def close(self) -> None:
+        """Close the connections that wait to be used again."""
+        self.workspace.engine.dispose()
 
     @property
     def run(self) -> RunFacts:
@@ -69,18 +76,30 @@ class DeskSite:
                 if self._run is None or runs[:1] != [self._run.run_id]:
                     self._run = RunFacts(self.workspace)
                     self.environment = environment(self._run.language)
+                    self.fragment = fragments(self.environment, "desk/_fields.html")
                     logger.info("the desk shows run %s", self._run.run_id)
                 self._looked = time.monotonic()
             return self._run
 
+    @property
+    def state(self) -> tuple[object, ...]:
+        """What all pages but those of earthquakes rest on: where it is as before, they say the same as before.
+
+        Raises
+        ------
+        DeskError
+            Where there is no run.
+        """
+        return self.run.run_id, self._changed, newest_ids(self.workspace.engine), self.events.there
+
     def _renew(self) -> None:
-        ids = newest_ids(self.workspace.engine)
+        ids = newest_ids(self.workspace.engine)[:2]
         with self._lock:
-            if ids != self._ids:
+            if ids != self._read:
                 found: dict[str, tuple[Decision, ...]] = {}
                 for one in read_decisions(self.workspace.engine):
                     found[one.object_number] = (*found.get(one.object_number, ()), one)
-                self._log, self._words, self._ids = found, errand_words(self.workspace.engine), ids
+                self._log, self._words, self._read = found, errand_words(self.workspace.engine), ids
 
     def log(self, number: str) -> tuple[Decision, ...]:
         """Return all decisions about an object, by id."""

@@ -297,6 +297,11 @@ def needs(scene: Scene, *names: str) -> str:
     return f"not known: {', '.join(missing)}" if missing else ""
 
 
+def N_(text: str) -> str:  # noqa: N802 - as gettext has it
+    """Mark a text that a report says, for the catalogue of a translation."""
+    return text
+
+
 def unless_free(scene: Scene, what: str) -> str:
     """Return the reason why an object that is not free on its support does not {what}; "" when it is free.
 

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import needs
+from pipeline.models.common import N_, needs
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.models.sliding import FRICTION_AXIS, FRICTION_EXTREMES, FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, Quantity
@@ -44,7 +44,7 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
 
 def _applies(scene: Scene) -> str:
     if scene.support is not Support.ISOLATED or scene.item.isolator != FRICTION_ISOLATOR.name:
-        return "it does not stand on a friction isolator"
+        return N_("it does not stand on a friction isolator")
     return needs(scene, "friction_static")
 
 

@@ -23,7 +23,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import NO_VERTICAL, ROUNDING, needs
+from pipeline.models.common import N_, NO_VERTICAL, ROUNDING, needs
 from pipeline.models.remembering import remembered
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Columns, Excitation, Harm, Model, Motion, Scene, Support, Trials
@@ -68,7 +68,7 @@ def _run(
 
 def _applies(scene: Scene) -> str:
     if scene.support is not Support.HUNG:
-        return "it does not hang on a wall"
+        return N_("it does not hang on a wall")
     return needs(scene, "amplification")
 
 

@@ -16,7 +16,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import grid, needs
+from pipeline.models.common import N_, grid, needs
 from pipeline.models.friction import stick_slip, stick_slip_trace
 from pipeline.models.sliding import DIRECTIONS
 from pipeline.quantities import Array, Quantity
@@ -41,7 +41,7 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 
 def _applies(scene: Scene) -> str:
     if scene.support is not Support.ISOLATED or scene.item.isolator != HORIZONTAL_ISOLATOR.name:
-        return "it does not stand on a horizontal isolator"
+        return N_("it does not stand on a horizontal isolator")
     return needs(scene, "frequency", "damping", "friction", "stroke")
 
 

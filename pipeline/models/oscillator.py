@@ -20,7 +20,7 @@ from pipeline.errors import InputError
 from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
 from pipeline.kernels.resultant import resultant_batch
-from pipeline.models.common import ROUNDING, after_record, curve, grid
+from pipeline.models.common import N_, ROUNDING, after_record, curve, grid
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.models.sharing import shared
 from pipeline.quantities import Array, Quantity
@@ -184,7 +184,7 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 
 
 def _applies(_scene: Scene) -> str:
-    return "a building block of other models and of response spectra, not an object"
+    return N_("a building block of other models and of response spectra, not an object")
 
 
 SPECTRUM_FREQUENCIES = np.round(np.geomspace(0.2, 50.0, 96), 4)

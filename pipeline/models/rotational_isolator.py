@@ -18,7 +18,7 @@ import numpy as np
 
 from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_history
-from pipeline.models.common import ROUNDING, after_record, needs
+from pipeline.models.common import N_, ROUNDING, after_record, needs
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.models.oscillator import EXTREMES, OSCILLATES, oscillate, oscillate_bounds
 from pipeline.quantities import Array, Quantity
@@ -60,7 +60,7 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 
 def _applies(scene: Scene) -> str:
     if scene.support is not Support.ISOLATED or scene.item.isolator != ROTATIONAL_ISOLATOR.name:
-        return "it does not stand on a rotational isolator"
+        return N_("it does not stand on a rotational isolator")
     return needs(scene, "frequency", "damping", "cg_height", "inertia_ratio", "rotation_limit")
 
 

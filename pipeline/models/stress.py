@@ -25,7 +25,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from pipeline.models.band import MISSED, OVER, band_accelerations, pseudo_accelerations
-from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs, smallest_push
+from pipeline.models.common import N_, NO_TILT, ROUNDING, largest_push, needs, smallest_push
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.models.oscillator import OSCILLATES, PROMISED
 from pipeline.quantities import Array, G, Quantity
@@ -188,7 +188,7 @@ def _mark(frequency: float, parameters: Mapping[str, float], tension: float) -> 
 
 def _holds(scene: Scene, flexible: bool) -> str:
     if scene.support in (Support.HUNG, Support.SUSPENDED):
-        return "it hangs: its own weight is all that its section bears"
+        return N_("it hangs: its own weight is all that its section bears")
     missing = needs(scene, "mass", "lever", "area", "section_modulus", "allowable_stress")
     if missing:
         return f"its critical section is not known ({missing})"
@@ -196,9 +196,9 @@ def _holds(scene: Scene, flexible: bool) -> str:
     # Where it may be either, the flexible one has both: over the whole range of its frequency.
     bends = frequency is not None and frequency.low < 1.0 / RIGID_PERIOD
     if flexible and not bends:
-        return "it is rigid: no natural period above 0.06 s is known or estimated"
+        return N_("it is rigid: no natural period above 0.06 s is known or estimated")
     if not flexible and bends:
-        return "it is flexible: the dynamic stress model takes its place"
+        return N_("it is flexible: the dynamic stress model takes its place")
     return ""
 
 
@@ -214,7 +214,7 @@ _RANGES = {
     "section_modulus": (1e-6, 1e-3),
 }
 
-_LOOSE = "it is free to move instead"
+_LOOSE = N_("it is free to move instead")
 
 _BENDS = (
     "Its base taken as held while it bends, its critical section reaches {demand} ({low} to {high}); {capacity} is "

@@ -33,7 +33,7 @@ from pipeline.kernels import samples
 from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.pendulum import MOST_STEPS, pendulum_batch
 from pipeline.kernels.spherical import spherical_batch
-from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, grid, magnified, needs, shaken
+from pipeline.models.common import N_, NO_HISTORY, ROUNDING, broadcast, grid, magnified, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.models.sharing import shared
 from pipeline.quantities import Array, Quantity
@@ -195,8 +195,8 @@ def _trace_3d(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 
 def _swings(scene: Scene) -> str:
     if scene.support is Support.HUNG and scene.hanging not in (None, Hanging.WIRE):
-        return "it does not hang on one hook or wire: it does not swing in the plane of its wall"
-    return _hangs(scene, Support.HUNG, "it does not hang on a wall")
+        return N_("it does not hang on one hook or wire: it does not swing in the plane of its wall")
+    return _hangs(scene, Support.HUNG, N_("it does not hang on a wall"))
 
 
 def _hangs(scene: Scene, support: Support, why: str) -> str:
@@ -273,7 +273,7 @@ SWING_3D = Model(
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",
-    applies=lambda scene: _hangs(scene, Support.SUSPENDED, "it does not hang from one point"),
+    applies=lambda scene: _hangs(scene, Support.SUSPENDED, N_("it does not hang from one point")),
     sentence=_SENTENCE,
     fails="swings",
     trials=Trials(

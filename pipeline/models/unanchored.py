@@ -7,7 +7,7 @@ That it slides or rocks is no failure of its own: what it passes on then to the 
 from collections.abc import Mapping
 from dataclasses import replace
 
-from pipeline.models.common import needs
+from pipeline.models.common import N_, needs
 from pipeline.models.rigid_body import HALF, OVERTURNS
 from pipeline.models.standing import STANDING
 from pipeline.records import Scene
@@ -20,7 +20,7 @@ ABOUT = "This is about what it stands in, which is not fastened: it fails if tha
 def _applies(scene: Scene) -> str:
     # Only furniture has it among its models: an object is never tried with it.
     if UNANCHORED.name not in scene.models:
-        return "it is about furniture that is not fastened"
+        return N_("it is about furniture that is not fastened")
     return needs(scene, "half_width", "cg_height", "friction_static")
 
 

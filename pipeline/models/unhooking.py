@@ -46,7 +46,7 @@ import numpy as np
 from pipeline.kernels import samples
 from pipeline.kernels.flags import SENSITIVE
 from pipeline.kernels.hung_plate import hung_plate_batch
-from pipeline.models.common import NO_VERTICAL, broadcast, grid, lift_ratios, needs, shaken
+from pipeline.models.common import N_, NO_VERTICAL, broadcast, grid, lift_ratios, needs, shaken
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Columns, Excitation, Hanging, Harm, Model, Scene, Support, Trials
 
@@ -147,9 +147,9 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 
 def _applies(scene: Scene) -> str:
     if scene.support is not Support.HUNG:
-        return "it does not hang on a wall"
+        return N_("it does not hang on a wall")
     if scene.hanging in LOCKED:
-        return "its hardware is closed: nothing lifts it off"
+        return N_("its hardware is closed: nothing lifts it off")
     return needs(scene, "hooks_open", *BODY)
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.operations.presentation import presentation
-from pipeline.operations.run_summary import SUMMARY, Summary, exit_code_of, write_aside
+from pipeline.operations.run_summary import SUMMARY, Summary, exit_code_of, is_fault, write_aside
 from pipeline.report import Language, ReportError
 from pipeline.report.pages.landing import MARK, landing_page
 from pipeline.report.pages.news import OPEN
@@ -83,6 +83,8 @@ class Status:
         Of the failure; empty where there was none.
     exit_code : int
         Of the failure; 0 where there was none.
+    fault : bool
+        Whether Kouros itself failed, and nobody else can mend it.
     began : str
         When the run began that said so, ISO 8601, UTC; empty where no run did.
     nights : sequence of mapping
@@ -100,6 +102,7 @@ class Status:
     exit_code: int = 0
     began: str = ""
     nights: Sequence[Mapping[str, str]] = ()
+    fault: bool = False
 
     @property
     def stale(self) -> bool:
@@ -160,7 +163,7 @@ def mark_failed(settings: Settings, problem: BaseException, message: str) -> Non
     # Who stops a run interrupts it; nothing failed.
     outcome = FAILED if isinstance(problem, Exception) else INTERRUPTED
     nights = _with(_nights(status(settings)), outcome, began, now)
-    _write(settings, Status(FAILED, now, os.getpid(), good, kind, message, code, began, nights))
+    _write(settings, Status(FAILED, now, os.getpid(), good, kind, message, code, began, nights, is_fault(problem)))
 
 
 def _nights(known: Status | None) -> list[Mapping[str, str]]:

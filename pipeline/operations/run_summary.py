@@ -208,6 +208,12 @@ def exit_code_of(problem: BaseException) -> int:
     return problem.exit_code if isinstance(problem, KourosError) else 1
 
 
+def is_fault(problem: BaseException) -> bool:
+    """Say whether Kouros itself is at fault: nothing that people can mend, no stop by hand, and no system's error."""
+    mended = isinstance(problem, KourosError) or not isinstance(problem, Exception)
+    return not mended and not (isinstance(problem, OSError) and problem.errno is not None)
+
+
 def words_of(problem: BaseException) -> str:
     """Return an error in words: what people can mend as it says; a fault of Kouros as such, with its place."""
     if isinstance(problem, KeyboardInterrupt):

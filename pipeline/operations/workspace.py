@@ -151,7 +151,8 @@ class Workspace:
 
         wanted = self.settings.plan
         own = self._own(wanted.efforts, "[plan] efforts names the file of what measures take you")
-        return PlanTerms(efforts(own, self.measures), EffortLimits(wanted.hours or None, wanted.cost or None))
+        limits = EffortLimits(wanted.hours or None, wanted.cost or None)
+        return PlanTerms(efforts(own, self.measures), limits, wanted.currency)
 
     def object_index(self) -> "ObjectIndex":
         """Return the objects of the inventory as it is now."""
@@ -234,14 +235,17 @@ def site_folder(home: Path, name: str) -> Path:
     return resource("site_motions", name) if name in BUNDLED else home / Path(name).expanduser()
 
 
-def open_workspace(settings: "Settings") -> Workspace:
-    """Open the database, bringing its tables to the newest schema; in a dry run it can only be read."""
+def open_workspace(settings: "Settings", *, keeping: int = 0) -> Workspace:
+    """Open the database, bringing its tables to the newest schema; in a dry run it can only be read.
+
+    keeping : how many connections wait to be used again (see `open_database`)
+    """
     from pipeline.collection.database import open_database
     from pipeline.store import migrate
 
     if settings.rehearsal is not None:
         return Workspace(settings, read_only(settings, settings.rehearsal))
-    engine = open_database(settings.database)
+    engine = open_database(settings.database, keeping=keeping)
     migrate.upgrade(engine)
     return Workspace(settings, engine)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import fsum
 
-from pipeline.analysis.stakes import expected_loss
+from pipeline.analysis.stakes import expected_loss, to_check
 from pipeline.mitigate.search import ANCHORED
 from pipeline.planning.efforts import Efforts, EffortSpan
 from pipeline.quantities import sorting_key
@@ -26,6 +26,8 @@ class Advised:
         What is expected to be lost as it stands, and with the measure, in objects of class C.
     page : str
         Page and place of the object in the report; "" where there is none.
+    check : bool
+        Whether its sizes are to be checked first: what is advised for sizes that nobody believes is not built.
     """
 
     object_number: str
@@ -38,6 +40,7 @@ class Advised:
     loss: float
     left: float
     page: str = ""
+    check: bool = False
 
     @property
     def anchored(self) -> bool:
@@ -102,6 +105,7 @@ def advised(assessment: Assessment, sentence: str, page: str = "") -> Advised | 
         loss,
         loss_left(loss, found.probability, advice.remaining),
         page,
+        to_check(assessment),
     )
 
 
@@ -141,6 +145,11 @@ class Errand:
     prepares: bool = False
     away: bool = False
 
+    @property
+    def check(self) -> bool:
+        """Whether the sizes of its objects are to be checked before it is begun."""
+        return all(one.check for one in self.objects)
+
     @cached_property
     def loss(self) -> float:
         """What is expected to be lost of its objects without it; 0 where it only prepares."""
@@ -157,8 +166,9 @@ class Errand:
         return self.loss - self.left
 
 
-_Key = tuple[str, str, str, bool, str]
-"""Gallery, case, measure, whether its furniture is fastened first, and the object where it is in no case."""
+_Key = tuple[str, str, str, bool, str, bool]
+"""Gallery, case, measure, whether its furniture is fastened first, the object where it is in no case, and whether sizes
+are to be checked before."""
 
 
 def errands_of(found: Iterable[Advised], efforts: Efforts, order: Mapping[str, int]) -> tuple[Errand, ...]:
@@ -182,26 +192,28 @@ def errands_of(found: Iterable[Advised], efforts: Efforts, order: Mapping[str, i
     fastened: dict[_Key, list[Advised]] = {}
     for one in found:
         alone = "" if one.case else one.object_number
-        groups.setdefault((one.gallery, one.case, one.measure, one.anchored, alone), []).append(one)
+        # Furniture is fastened once for all that is in it.
+        check = one.check and one.measure != efforts.anchor
+        groups.setdefault((one.gallery, one.case, one.measure, one.anchored, alone, check), []).append(one)
         if one.anchored:
-            fastened.setdefault((one.gallery, one.case, efforts.anchor, False, alone), []).append(one)
+            fastened.setdefault((one.gallery, one.case, efforts.anchor, False, alone, False), []).append(one)
     keys = [*groups, *(key for key in fastened if key not in groups)]
     members = {
         key: sorted(groups.get(key) or fastened[key], key=lambda one: sorting_key(one.object_number)) for key in keys
     }
 
-    def walked(key: _Key) -> tuple[int, str, str, str, bool, str, str]:
-        gallery, case, measure, anchored, alone = key
+    def walked(key: _Key) -> tuple[int, str, str, str, bool, str, str, bool]:
+        gallery, case, measure, anchored, alone, check = key
         # What is in no case is by itself; its furniture is fastened before what is done on it.
         first = sorting_key(members[key][0].object_number)
         place = order.get(gallery, len(order)), sorting_key(gallery)
-        return *place, sorting_key(case), sorting_key(alone), anchored, first, measure
+        return *place, sorting_key(case), sorting_key(alone), anchored, first, measure, check
 
     keys.sort(key=walked)
     at = {key: place for place, key in enumerate(keys)}
     out = []
     for key in keys:
-        gallery, case, measure, anchored, alone = key
+        gallery, case, measure, anchored, alone, check = key
         those, row = members[key], efforts.of(measure)
         prepares = key not in groups
         title = efforts.titles.get(measure, measure) if prepares else those[0].measure_title
@@ -215,7 +227,7 @@ def errands_of(found: Iterable[Advised], efforts: Efforts, order: Mapping[str, i
                 tuple(those),
                 row.hours_of(len(those)),
                 row.cost_of(len(those)),
-                needs=at[gallery, case, efforts.anchor, False, alone] if anchored else None,
+                needs=at[gallery, case, efforts.anchor, False, alone, False] if anchored else None,
                 prepares=prepares,
                 away=measure in efforts.away,
             )

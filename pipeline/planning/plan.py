@@ -20,10 +20,13 @@ class PlanTerms:
         What measures take.
     limits : EffortLimits
         What there is.
+    currency : str
+        In which costs are told; "" where the museum names none.
     """
 
     efforts: Efforts
     limits: EffortLimits = field(default_factory=EffortLimits)
+    currency: str = ""
 
 
 @dataclass(frozen=True)
@@ -75,10 +78,12 @@ class ErrandPlan:
 
     def together(self, places: Iterable[int]) -> list[tuple[int, ...]]:
         """Return errands by what is done in one gallery, or one case of it, by one measure; as the first of each."""
-        groups: dict[tuple[str, str, str, str, bool], list[int]] = {}
+        groups: dict[tuple[str, str, str, str, bool, bool], list[int]] = {}
         for at in places:
             one = self.errands[at]
-            groups.setdefault((one.gallery, one.case, one.title, one.trade, one.needs is None), []).append(at)
+            groups.setdefault((one.gallery, one.case, one.title, one.trade, one.needs is None, one.check), []).append(
+                at
+            )
         return [tuple(those) for those in groups.values()]
 
     @property

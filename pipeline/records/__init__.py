@@ -42,6 +42,8 @@ from pipeline.records.scene import (
     Provenance,
     Scene,
     Support,
+    times_too_thin,
+    too_thin,
 )
 from pipeline.records.state import State, standing, state_of
 
@@ -126,4 +128,6 @@ __all__ = [
     "in_force",
     "standing",
     "state_of",
+    "times_too_thin",
+    "too_thin",
 ]

@@ -121,12 +121,6 @@ class Decision:
     @property
     def matter(self) -> str:
         """What was decided, in short: "installed clearance (clearance 0.1 m)"."""
-        about = ", ".join(text for text in (self.model, self.level and f"level {self.level}") if text)
-        end = f" until {self.until}" if self.until else ""
-        given = ", ".join(
-            f"{name} {value:g} {self.units[name]}".removesuffix(" -") for name, value in self.parameters.items()
-        )
-        about = f" ({about or given})" if about or given else ""
         what = {
             DecisionKind.ACCEPT: "risk accepted",
             DecisionKind.INSTALLED: f"installed {self.measure}",
@@ -134,8 +128,18 @@ class Decision:
             DecisionKind.VERDICT: f"verdict {self.verdict}",
             DecisionKind.WITHDRAW: f"withdrawal of {self.withdraws}",
         }[self.kind]
-        product = f", {self.product}" if self.product else ""
-        return f"{what}{about}{product}{end}"
+        return what + self.about
+
+    @property
+    def about(self) -> str:
+        """What follows of the matter: " (clearance 0.1 m)", a product, until when."""
+        found = ", ".join(text for text in (self.model, self.level and f"level {self.level}") if text)
+        given = ", ".join(
+            f"{name} {value:g} {self.units[name]}".removesuffix(" -") for name, value in self.parameters.items()
+        )
+        told = f" ({found or given})" if found or given else ""
+        told += f", {self.product}" if self.product else ""
+        return told + (f" until {self.until}" if self.until else "")
 
     @property
     def by(self) -> str:

@@ -24,6 +24,8 @@ class Brief:
         Row of tables/measures.csv that is advised first, and its title; "" for nothing.
     missing : str
         What is not recorded that its models need, the first of it; "" for nothing.
+    check : bool
+        Whether its sizes are to be checked before anything is done about it.
     """
 
     state: State | None = None
@@ -31,6 +33,7 @@ class Brief:
     measure: str = ""
     advice: str = ""
     missing: str = ""
+    check: bool = False
 
 
 class NewsKind(StrEnum):
@@ -60,17 +63,25 @@ class Settled:
         Row of tables/measures.csv that it says is installed; "" for another decision.
     matter, who : str
         What was decided, and by whom.
+    kind, object_class : str
+        The `DecisionKind`, and the row of tables/classes.csv that it says the object is; "" where not known, or none.
+    about : str
+        What follows of the matter: which finding it is about, a product, its last day.
     """
 
     new: bool
     measure: str
     matter: str
     who: str
+    kind: str = ""
+    object_class: str = ""
+    about: str = ""
 
     @classmethod
     def of(cls, decision: Decision, *, new: bool) -> Settled:
         """Return a decision as news tells it."""
-        return cls(new, decision.measure, decision.matter, decision.who)
+        named = (decision.kind.value, decision.object_class, decision.about)
+        return cls(new, decision.measure, decision.matter, decision.who, *named)
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,6 +55,8 @@ class Result:
         By name of the model, for how many of its analyses any history was run.
     wishes : tuple of MeasurementRequest or None
         What is worth measuring on it; None where the run did not ask.
+    check : bool
+        Whether its sizes are to be checked before anything is done about it.
     """
 
     object_class: str
@@ -82,6 +84,7 @@ class Result:
     chances: tuple[tuple[str, float], ...] = ()
     mount: Mount | None = None
     mount_origin: Origin | None = None
+    check: bool = False
 
 
 Urgency = tuple[int, bool, bool, float, float, float, str, str]

@@ -384,3 +384,18 @@ class Scene:
         """Where it is known from what the object stands on; None where nobody says, or it hangs as all such do."""
         hangs = self.support in (Support.HUNG, Support.SUSPENDED)
         return None if hangs and self.furniture_origin is Origin.ASSUMED else self.furniture_origin
+
+
+_TOO_THIN = ("support (it is ", " times as high as it is deep: it cannot stand by itself, or a measure is wrong)")
+
+
+def too_thin(times: float) -> str:
+    """Return what is missing of an object that is too thin to stand, where nothing tells how it is held."""
+    return f"{times:.0f}".join(_TOO_THIN)
+
+
+def times_too_thin(missing: str) -> int | None:
+    """Return how many times as high as deep an object is, where that is why its support is missing; else None."""
+    before, after = _TOO_THIN
+    times = missing.removeprefix(before).removesuffix(after)
+    return int(times) if times.isdecimal() and missing == times.join(_TOO_THIN) else None

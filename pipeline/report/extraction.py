@@ -7,6 +7,7 @@ from io import TextIOWrapper
 from typing import IO
 
 from pipeline.analysis.classify import object_classes
+from pipeline.analysis.furniture import DAMPING, FREQUENCY, LEVEL_ERROR
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.fixing_rows import fixing_strengths
@@ -90,6 +91,7 @@ def _names() -> Iterator[str]:
     yield from (bare(name) for name in names)
     yield from ("width (or diameter)", "height or suspension length", "height of the centre of gravity")
     yield "width of its weakest section"
+    yield from map(bare, (FREQUENCY, DAMPING, LEVEL_ERROR))
     yield from (f"no generic model applies: it {row['why']}" for row in table("classes") if row["models"] == "none")
     # Whoever chooses one of them at the desk reads its title.
     yield from object_classes().values()

@@ -41,6 +41,11 @@ def _significant(value: float, digits: int, keep: bool) -> str:
     return (text.rstrip("0").rstrip(".") if "." in text and not keep else text).replace("-", "−")
 
 
+def percent(share: float, decimals: int = 0) -> str:
+    """Write a share in hundredths, such as "12 %"; the line is not broken before the sign."""
+    return local(f"{100.0 * share:.{decimals}f}\u00a0%")
+
+
 def ratio(value: float) -> str:
     """Write a finite ratio with two significant digits, and more where two would hide on which side of 1 it lies."""
     return local(_digits(value)) or (_("just above 1") if value > 1.0 else _("just below 1"))

@@ -270,6 +270,12 @@ class PlanSettings(_Part):
     cost: float = Field(
         default=0.0, ge=0.0, le=1e12, description="material and outside work, in your currency; 0: no limit"
     )
+    currency: str = Field(
+        default="",
+        max_length=8,
+        pattern=r"^[^\s<>&\"']*$",
+        description='in which costs are told, such as "EUR"; empty: none is named',
+    )
     efforts: str = Field(
         default="",
         description="a CSV file with the columns of Kouros's efforts.csv: what a measure takes you of hours and cost, "

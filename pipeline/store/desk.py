@@ -9,8 +9,20 @@ from typing import Any
 
 from sqlalchemy import Engine, Table, delete, func, insert, select, update
 
+from pipeline.collection.inventory.tables import IMPORT_BATCH
 from pipeline.collection.sealing import require_sound, sound_rows, write_seals
 from pipeline.store.tables import ACCOUNT, DECISION, ERRAND_WORD, PICTURE, SESSION
+
+# Built once: SQLAlchemy takes longer to put a statement together than SQLite to answer it.
+_PICTURES = select(*(PICTURE.c[name] for name in ("id", "object_number", "note", "who", "recorded"))).order_by(
+    PICTURE.c.id
+)
+_NEWEST = select(
+    *(
+        select(func.coalesce(func.max(table.c.id), 0)).scalar_subquery()
+        for table in (DECISION, ERRAND_WORD, PICTURE, IMPORT_BATCH)
+    )
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,8 +142,7 @@ def add_picture(engine: Engine, picture: Picture, image: bytes) -> None:
 
 def pictures_of(engine: Engine, object_number: str) -> tuple[Picture, ...]:
     """Return the photographs of an object's mount, the oldest first, without the images."""
-    wanted = [PICTURE.c[field.name] for field in fields(Picture)]
-    query = select(*wanted).where(PICTURE.c.object_number == object_number).order_by(PICTURE.c.id)
+    query = _PICTURES.where(PICTURE.c.object_number == object_number)
     with engine.connect() as connection:
         return tuple(Picture(*row) for row in connection.execute(query))
 
@@ -144,13 +155,12 @@ def picture_image(engine: Engine, number: int) -> bytes | None:
 
 
 def newest_ids(engine: Engine) -> tuple[int, ...]:
-    """Return the newest ids of decisions and of words on errands: where these are as before, nothing was added."""
+    """Return the newest ids of decisions, words on errands, photographs of mounts and versions of the inventory.
+
+    Where these are as before, nobody has added anything.
+    """
     with engine.connect() as connection:
-        return tuple(connection.execute(select(*map(_last, (DECISION, ERRAND_WORD)))).one())
-
-
-def _last(table: Table) -> Any:
-    return select(func.coalesce(func.max(table.c.id), 0)).scalar_subquery()
+        return tuple(connection.execute(_NEWEST).one())
 
 
 def _add(engine: Engine, table: Table, row: Any, more: dict[str, Any]) -> None:

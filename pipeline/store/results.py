@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Engine, Table, delete, insert, select
 
+from pipeline.analysis.stakes import to_check
 from pipeline.collection.sealing import damaged_rows, sealed, sound_rows
 from pipeline.records import (
     Assessment,
@@ -127,6 +128,7 @@ def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[Mea
         scene.chances,
         scene.mount,
         scene.mount_origin,
+        to_check(assessment),
     )
 
 
@@ -388,6 +390,7 @@ def _brief(result: Result) -> Brief:
         "" if found is None else found.band.value,
         *(("", "") if advice is None else (advice.measure, advice.title)),
         next(iter(result.missing), ""),
+        result.check,
     )
 
 

@@ -12,7 +12,7 @@ from pipeline.analysis.survey import measurable_of, measurables
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection
-from pipeline.records import Furniture, Item, Origin, Support
+from pipeline.records import Furniture, Item, Origin, Support, times_too_thin
 from pipeline.tables import Range, Row, table
 from pipeline.tables.assumed import assumed, span
 from pipeline.tables.fill_rows import fills
@@ -231,6 +231,8 @@ def test_a_sheet_does_not_stand() -> None:
     scene = classify(replace(VASE, title="Dancer", classification="figurines", height_m=0.5, width_m=0.3, depth_m=0.02))
     assert len(scene.missing) == 1
     assert scene.missing[0].startswith("support (it is 25 times as high as it is deep")
+    assert times_too_thin(scene.missing[0]) == 25
+    assert [times_too_thin(text) for text in ("support", scene.missing[0][:-1], "25", "height")] == [None] * 4
 
 
 def test_a_recorded_support_changes_the_models() -> None:

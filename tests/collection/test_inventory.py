@@ -278,3 +278,20 @@ def test_the_folder_of_the_database_is_made(tmp_path: Path) -> None:
     METADATA.create_all(engine)
     assert read_inventory(engine) == []
     engine.dispose()
+
+
+def test_a_kept_connection_leaves_a_file_that_another_took_the_place_of(tmp_path: Path) -> None:
+    file, backup = tmp_path / "kouros.db", tmp_path / "backup.db"
+    for where, count in ((backup, 2), (file, 3)):
+        made_there = open_database(where)
+        METADATA.create_all(made_there)
+        replace_inventory(made_there, made(numbered(count)))
+    engine = open_database(file, keeping=2)
+    assert len(read_inventory(engine)) == 3
+    with engine.connect() as connection:
+        kept = connection.connection.dbapi_connection
+    with engine.connect() as connection:
+        assert connection.connection.dbapi_connection is kept
+    backup.replace(file)
+    assert len(read_inventory(engine)) == 2
+    engine.dispose()

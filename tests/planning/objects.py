@@ -11,10 +11,13 @@ MEASURES = ("wax", "putty", "ties", "clips", "clamps", "fasten", "horizontal_iso
 def advised(
     number: str, measure: str, loss: float, left: float = 0.0, *, gallery: str = "East", case: str = "",
     anchored: bool = False, sentence: str = "Do it.", title: str = "Vase",
+    check: bool = False,
 ) -> Advised:  # fmt: skip
     """An object that something is advised for."""
     words = f"{ANCHORED} {sentence}" if anchored else sentence
-    return Advised(number, title, gallery, case, measure, measure.title(), words, loss, left, f"east.html#{number}")
+    return Advised(
+        number, title, gallery, case, measure, measure.title(), words, loss, left, f"east.html#{number}", check
+    )
 
 
 def collection(size: int, seed: int, galleries: int = 2, removed: float = 0.0) -> list[Advised]:

@@ -60,6 +60,16 @@ def test_a_case_on_an_isolator_is_bought_once() -> None:
     assert one.trade == "engineer"
 
 
+def test_what_has_doubtful_sizes_is_an_errand_of_its_own_and_its_furniture_is_fastened_once() -> None:
+    found = [
+        advised("1", "wax", 1.0, case="A", anchored=True),
+        advised("2", "wax", 1.0, case="A", anchored=True, check=True),
+        advised("3", "anchor", 1.0, case="A", check=True),
+    ]
+    said = [([o.object_number for o in e.objects], e.measure, e.needs, e.check) for e in errands_of(found, HAVE, {})]
+    assert said == [(["3"], "anchor", None, True), (["1"], "wax", 0, False), (["2"], "wax", 0, True)]
+
+
 def test_furniture_that_has_to_be_fastened_first_is_an_errand_that_others_need() -> None:
     found = [
         advised("1", "wax", 1.0, case="A", anchored=True),

@@ -124,7 +124,7 @@ def test_ages_are_in_words_of_the_page(browser: Chrome, tmp_path: Path) -> None:
 @pytest.mark.browser
 def test_a_fault_of_kouros_is_told_in_a_sentence_and_its_error_is_folded(browser: Chrome, tmp_path: Path) -> None:
     error = f"{FAULT}: KeyError: 'percent' (report/pages/environment.py, line 89, fill)"
-    browser.get(page(tmp_path, {**status("failed"), "message": error}).as_uri())
+    browser.get(page(tmp_path, {**status("failed"), "message": error, "fault": True}).as_uri())
     text = browser.find_element("css selector", ".alarm").text
     assert "It is a fault of Kouros and not of yours." in text
     assert "KeyError" not in text

@@ -7,12 +7,23 @@ from collections import Counter
 from dataclasses import asdict, replace
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from pipeline.operations.hooks import SUBJECTS
 from pipeline.operations.run_summary import json_ready, plain_changes
-from pipeline.records import Brief, NewsKind, ObjectChange, RunChanges, Settled, State
+from pipeline.records import (
+    Brief,
+    Decision,
+    DecisionKind,
+    NewsKind,
+    ObjectChange,
+    RunChanges,
+    Settled,
+    State,
+    Verdict,
+)
 from pipeline.report import render
 from pipeline.report.pages.news import ON_A_PAGE, kept_view, news_line, news_view, sentences, to_do
 from pipeline.tables import table
@@ -38,6 +49,21 @@ def test_the_words_that_a_curator_reads() -> None:
         "New and in danger: 2026.1 vase: fasten it.",
     ]
     assert SUBJECTS["changed"] == "what changed"
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"kind": DecisionKind.ACCEPT, "until": "2032-01-01"}, "risk accepted until 2032-01-01, by Ann"),
+        ({"kind": DecisionKind.ACCEPT, "model": "rocking"}, "risk accepted (rocking), by Ann"),
+        ({"kind": DecisionKind.CLASS, "object_class": "vessel"}, "named: Vessel, by Ann"),
+        ({"kind": DecisionKind.VERDICT, "verdict": Verdict.PASS, "level": "a"}, "verdict pass (level a), by Ann"),
+    ],
+)
+def test_a_decision_is_told_in_the_words_of_who_decides(more: dict[str, Any], said: str) -> None:
+    made = Decision(1, "1", who="Ann", date="2031-05-01", why="w", recorded="", **more)
+    change = ObjectChange("1", "t", "g", FINE, FINE, decided=(Settled.of(made, new=True),))
+    assert news_line(change).text.startswith(f": {said}")
 
 
 def test_every_measure_of_the_table_has_words_of_its_own() -> None:

@@ -18,16 +18,20 @@ from lxml import html
 from pipeline.cli.console import summary_lines
 from pipeline.night.run import summarise
 from pipeline.operations.run_summary import summary_document
-from pipeline.records import Assessment, Found, Item, Likelihood, Urgency
+from pipeline.planning.efforts import efforts
+from pipeline.planning.plan import PlanTerms
+from pipeline.records import Assessment, Brief, Found, Item, Likelihood, Urgency
 from pipeline.records.likelihood import Sampling
 from pipeline.report import render
 from pipeline.report.files.concatenation import concatenate
 from pipeline.report.files.exports import OBJECT_COLUMNS, RANK, schema_of
 from pipeline.report.files.ranks import keys_part, ranks_of
 from pipeline.report.pages.compose import PERIODS
+from pipeline.report.pages.news import to_do
 from pipeline.report.pages.ranking import urgency
 from pipeline.report.pages.tallies import tally
 from pipeline.resources import resource
+from pipeline.store.results import anonymous, encode
 
 from . import builder
 
@@ -155,6 +159,26 @@ def test_the_rank_is_the_order_of_the_first_page_and_that_of_what_is_lost(tmp_pa
     check = html.parse(page).xpath("//section[@aria-labelledby='check']")[0]
     assert [text for text in check.xpath(".//li/a//text()") if text.strip() in ranks] == ["5"]
     assert "1 object to act on can hardly stand as it is recorded" in check.text_content()
+
+
+def test_what_can_hardly_stand_is_to_be_checked_first_whatever_page_names_it(tmp_path: Path) -> None:
+    """The list of the gallery, the plan, the exports and the news; what stands as recorded is told its measure."""
+    doubted, sound = _likely("5", 0.9, height_m=0.9, width_m=0.1, depth_m=0.1), _likely("6", 0.9, height_m=0.3)
+    head = replace(builder.record(), assessments=(doubted, sound), decisions=())
+    folder = render(head, tmp_path / "report", terms=PlanTerms(efforts())).parent
+    with (folder / "objects.csv").open(encoding="utf-8", newline="") as stream:
+        flags = {row["object_number"]: row["check_sizes"] for row in csv.DictReader(stream)}
+    assert flags == {"5": "true", "6": "false"}
+    with (folder / "plan.csv").open(encoding="utf-8", newline="") as stream:
+        titles = {row["objects"]: row["title"] for row in csv.DictReader(stream)}
+    title = sound.recommendations[0].title
+    assert titles == {"5": f"Check the sizes first, then: {title}", "6": title}
+    plan = html.parse(folder / "plan.html").xpath("string(//main)")
+    assert f"Check the sizes first, then: {title}" in plan
+    (gallery,) = [file for file in folder.glob("g-*.html") if "-sheet" not in file.name]
+    assert "Check its sizes first" in html.parse(gallery).xpath("string(//main)")
+    briefs = [json.loads(encode("k", [anonymous(one, {}, None)]).outline)[0][-1] for one in (doubted, sound)]
+    assert [to_do(Brief(**brief)) for brief in briefs] == ["check its sizes first", "fasten it"]
 
 
 def test_the_list_of_records_to_check_is_bounded_and_counts_all(tmp_path: Path) -> None:

@@ -30,6 +30,8 @@ RECORD_COLUMNS = (
 )
 """The columns of a record and its digest, as `checked` reads them."""
 
+_RECORDS = select(*RECORD_COLUMNS)
+
 NUMBER_AT = ITEM_FIELDS.index("object_number")
 """Where the object number stands among them."""
 
@@ -193,7 +195,7 @@ def rows_where(connection: Connection, condition: ColumnElement[bool]) -> Iterat
     DamagedRecordError
         For records that the database cannot even give back as text.
     """
-    wanted = select(*RECORD_COLUMNS).where(condition)
+    wanted = _RECORDS.where(condition)
     try:
         yield from connection.execute(wanted, execution_options=_STREAM)
     except DBAPIError as problem:

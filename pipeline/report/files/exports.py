@@ -31,6 +31,7 @@ _NUMBERS = (
     "chance_50_years_high", *(f"yearly_{state.value}" for state in Harm),
     "probability", "probability_error", *(f"p_{state.value}" for state in Harm), "worth", "expected_loss", "remaining",
 )  # fmt: skip
+_FLAGS = ("on_display", "settled", "check_sizes")
 _LISTS = ("assumptions", "parameters", "checks", "rejected")
 FINDING_COLUMNS = (
     "run", "object_number", "gallery", "level", "model", "title", "demand_name", "demand", "unit", "low", "high",
@@ -46,7 +47,7 @@ OBJECT_COLUMNS = (
     "run", "object_number", "title", "gallery", "case", "on_display", "state", "object_class", "class_probability",
     "class_next", "class_next_probability", "furniture",
     "furniture_origin", "missing", "probability", "probability_error", "band", "harm", "harm_level",
-    *(f"p_{state.value}" for state in Harm), "open_for", "worth", "expected_loss",
+    *(f"p_{state.value}" for state in Harm), "open_for", "worth", "expected_loss", "check_sizes",
     "median_g", "median_is", "dispersion", "median_pgv_m_s", "goodness", "annual_rate", "chance_50_years",
     "chance_50_years_low", "chance_50_years_high", *(f"yearly_{state.value}" for state in Harm), "page", "rank",
 )  # fmt: skip
@@ -329,7 +330,7 @@ def schema_of(name: str) -> Any:
     """Return the types of the columns of a whole table, for Parquet."""
     import pyarrow as pa
 
-    kinds = {column: pa.float64() for column in _NUMBERS} | {"on_display": pa.bool_(), "settled": pa.bool_()}
+    kinds = {column: pa.float64() for column in _NUMBERS} | dict.fromkeys(_FLAGS, pa.bool_())
     kinds |= dict.fromkeys(_LISTS, pa.list_(pa.string())) | {RANK: pa.int64()}
     return pa.schema([(column, kinds.get(column, pa.string())) for column in TABLES[name]])
 

@@ -16,7 +16,7 @@ from pipeline.report.files.sheet_cells import headed, to_fill_in, write_cell
 from pipeline.report.files.workbook import saved
 from pipeline.report.pages.compose import anchor_of, page_name
 from pipeline.report.pages.decided import Decided
-from pipeline.report.pages.errand_views import number, said_of
+from pipeline.report.pages.errand_views import number, said_of, title_of
 from pipeline.report.pages.ranking import state_of
 from pipeline.report.pages.views import State
 from pipeline.report.text import safe_cell
@@ -34,7 +34,7 @@ PLAN_COLUMNS = (
 _COUNTED = (State.ACT.value, State.WATCH.value, State.UNKNOWN.value)
 _OBJECT = (
     "object_number", "title", "gallery", "case", "on_display", "state", "probability", "harm_level", "expected_loss",
-    "page",
+    "check_sizes", "page",
 )  # fmt: skip
 _ADVICE = ("object_number", "gallery", "level", "measure", "title", "sentence", "remaining", "settled")
 
@@ -94,8 +94,11 @@ def gathered_from(folder: Path) -> Gathered:
             left = loss_left(loss, chance, told["remaining"])
             names = (row["object_number"], row["title"], row["gallery"], row["case"].strip())
             out.advised.append(
-                Advised(*names, told["measure"], told["title"], told["sentence"], loss, left, row["page"])
-            )
+                Advised(
+                    *names, told["measure"], told["title"], told["sentence"], loss, left, row["page"],
+                    bool(row.get("check_sizes")),
+                )
+            )  # fmt: skip
     return out
 
 
@@ -179,7 +182,7 @@ def errand_row(plan: ErrandPlan, at: int, one: Errand) -> dict[str, Any]:
         "case": one.case,
         "objects": "; ".join(object_.object_number for object_ in one.objects),
         "measure": one.measure,
-        "title": one.title,
+        "title": title_of(one),
         "sentence": " ".join(said_of(one)),
         "trade": one.trade,
         "hours": one.hours.value,
@@ -247,7 +250,7 @@ def _listed(sheet: Any, plan: ErrandPlan, places: Sequence[int]) -> None:
             2: one.gallery,
             3: one.case,
             4: ", ".join(object_.object_number for object_ in one.objects),
-            5: f"{one.title}: {' '.join(said_of(one))}",
+            5: f"{title_of(one)}: {' '.join(said_of(one))}",
             6: one.trade,
             7: number(one.hours.value),
             8: number(one.cost.value),

@@ -4,12 +4,13 @@ from dataclasses import dataclass
 from functools import cache
 
 from pipeline.analysis.classify import object_classes
-from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss
+from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss, to_check
 from pipeline.analysis.survey import measurables, size_behind
 from pipeline.records import Assessment, Band, Harm, IfClass, Likelihood, Mount, Recommendation, Scene
 from pipeline.records.likelihood import CLASS
 from pipeline.report.language import _, local, said
 from pipeline.report.text import clean, words
+from pipeline.report.units import percent
 
 ACTED = (Band.ALMOST_CERTAIN, Band.LIKELY, Band.POSSIBLE)
 """Words for what something is done about."""
@@ -52,7 +53,7 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         return None
     numbers = _("%(share)s ± %(error)s of %(samples)s samples") % {
         "share": _percent(found.probability),
-        "error": local(f"{100.0 * found.error:.1f}\u00a0%"),
+        "error": percent(found.error, 1),
         "samples": found.samples,
     }
     others = [f"{_STATES[Harm(name)]()} {_percent(p)}" for name, p in found.states.items() if p >= _LEAST]
@@ -138,7 +139,7 @@ def left_over(advice: Recommendation) -> str:
 
 
 def _percent(probability: float) -> str:
-    return f"{100.0 * probability:.0f}\u00a0%" if probability >= _LEAST else _("below 1 %")
+    return percent(probability) if probability >= _LEAST else _("below 1 %")
 
 
 def open_for(assessment: Assessment) -> str:
@@ -161,6 +162,7 @@ def chance_columns(assessment: Assessment) -> dict[str, str | float | None]:
         "open_for": open_for(assessment),
         "worth": found.worth if found is not None and found.open_for else None,
         "expected_loss": None if found is None else expected_loss(assessment),
+        "check_sizes": to_check(assessment),
     }
 
 

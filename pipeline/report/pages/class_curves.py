@@ -18,6 +18,7 @@ from pipeline.records.fragility import ABOVE, BELOW, HARM
 from pipeline.report.language import _, local
 from pipeline.report.pages.judging import in_g
 from pipeline.report.text import clean, count, safe_cell, words
+from pipeline.report.units import percent
 
 GRID = tuple(float(f"{a:.4g}") for a in np.geomspace(0.02, 4.0, 24))
 """Peak accelerations of the floor at which curves are added up [g]."""
@@ -218,6 +219,6 @@ def _view(one: ClassCurve) -> ClassCurveView:
         count(one.objects),
         median,
         "–" if one.dispersion is None else f"{one.dispersion:.2f}",
-        "–" if one.difference is None else f"{100.0 * one.difference:.0f} %",
+        "–" if one.difference is None else percent(one.difference),
         harmed,
     )

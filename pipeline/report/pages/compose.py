@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
+from pipeline.analysis.stakes import to_check
 from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Page, Photo, Recommendation, RunRecord, Tally, Urgency
 from pipeline.report.errors import ReportError
@@ -18,7 +19,7 @@ from pipeline.report.pages.judging import room_views, shaking_view, spacing_view
 from pipeline.report.pages.museum_views import GalleryView, MuseumView
 from pipeline.report.pages.numerics import decided_views, fidelities
 from pipeline.report.pages.photo_views import credits_of, photo_view
-from pipeline.report.pages.ranking import to_check, urgency
+from pipeline.report.pages.ranking import urgency
 from pipeline.report.pages.reading import reading_view
 from pipeline.report.pages.selftest import self_test_view
 from pipeline.report.pages.survey_words import SURVEY_SECONDS, errands, survey_sentence
@@ -38,7 +39,7 @@ from pipeline.report.pages.views import (
 )
 from pipeline.report.pages.walking import WalkView, numbers_to_set, walk_view
 from pipeline.report.text import clean, count, digest, slug
-from pipeline.report.units import Units
+from pipeline.report.units import Units, percent
 
 STORED = "not-on-display"
 """Stem of the files of the objects that are not on display; a gallery's ends in a hash, so the two never meet."""
@@ -302,7 +303,7 @@ def _effort(title: str, effort: Mapping[str, int]) -> EffortView:
         effort["certificate"],
         effort["chart"],
         effort["history"],
-        f"{100.0 * needing / max(analyses, 1):.0f} %",
+        percent(needing / max(analyses, 1)),
     )
 
 

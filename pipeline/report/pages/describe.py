@@ -369,7 +369,7 @@ class Describer:
             worth=worth_words(scene, worth) if worth.terms else "",
             object_class=words(clean(scene.object_class)),
             taken=taken_words(scene),
-            rule=said(clean(scene.rule)),
+            rule=_rule_words(clean(scene.rule)),
             support=held(scene),
             place=clean(item.case),
             furniture=furniture(scene),
@@ -387,7 +387,7 @@ class Describer:
             chance=chance,
             open_for=open_for(assessment),
             fragilities=fragility_views(assessment, drawn=state is State.ACT and fails),
-            skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
+            skipped=tuple(f"{words(clean(model))}: {said(clean(why))}" for model, why in scene.skipped.items()),
             decisions=self.decided.of(assessment),
             settled=self.decided.covered(assessment),
         )
@@ -481,3 +481,10 @@ class Describer:
         listed = spots.setdefault(mark.chart, [])
         if spot not in listed:
             listed.append(spot)
+
+
+def _rule_words(rule: str) -> str:
+    """Return by which rule an object is of its class: the rule's name, and in the reader's language why."""
+    name, colon, why = rule.partition(": ")
+    told, bracket, found = why.rpartition(" (")
+    return f"{name}{colon}{said(told) if bracket else said(why)}{bracket}{found}"

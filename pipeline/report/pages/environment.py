@@ -2,7 +2,7 @@
 
 import hashlib
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Callable, Hashable, Mapping
 from functools import cache, lru_cache
 from typing import Any
 
@@ -61,6 +61,17 @@ def environment(language: Language | None = None) -> Environment:
     env.filters["thousands"] = count
     env.filters["moment"] = moment
     return env
+
+
+def fragments(env: Environment, template: str) -> Callable[..., Markup]:
+    """Return what gives pieces that many pages have in common, by the template's macro and what that is given."""
+    macros = env.get_template(template).module
+
+    @lru_cache(maxsize=4096)
+    def fragment(macro: str, *given: Hashable) -> Markup:
+        return Markup(getattr(macros, macro)(*given))  # noqa: S704 - the macro has escaped what it was given
+
+    return fragment
 
 
 def _squeezed(text: Markup) -> Markup:

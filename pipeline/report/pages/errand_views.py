@@ -15,7 +15,7 @@ from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.environment import environment, fill
 from pipeline.report.plots.effort_curve import effort_curve
 from pipeline.report.text import clean, count, short
-from pipeline.report.units import significant
+from pipeline.report.units import percent, significant
 
 SHOWN = 300
 """Errands on the page: about ten printed pages; the list beside it has all."""
@@ -88,6 +88,7 @@ class PlanView:
     walking : whether the errands are in walking order, else what avoids most for an hour comes first
     hidden  : errands of the plan that are only in the list beside the page
     away    : errands that take objects from view, and how much more they would avoid
+    priced  : whether costs have a currency
     """
 
     lede: str
@@ -105,6 +106,7 @@ class PlanView:
     away_hidden: int
     away_avoids: str
     curve: Markup
+    priced: bool
 
 
 def plan_page(plan: ErrandPlan, head: PageHead, language: Language, *, alone: bool = False) -> str:
@@ -141,6 +143,8 @@ def plan_view(plan: ErrandPlan, *, linked: bool = True, sentences: bool = True) 
     """
     walking = not plan.terms.limits.open
     first = plan.best_first
+    # As on the first page of the report, nobody begins with what hardly stands as it is recorded.
+    sound = [at for at in first if not plan.errands[at].check]
     listed = sorted(first[:SHOWN]) if walking else first[:SHOWN]
     away = sorted(plan.away, key=lambda at: (-plan.errands[at].avoided, at))
     views = {at: _errand(plan, at, linked=linked, sentences=sentences) for at in (*listed, *away[:DOUBTFUL])}
@@ -154,7 +158,7 @@ def plan_view(plan: ErrandPlan, *, linked: bool = True, sentences: bool = True) 
             (_TRADES[trade](), count(sum(one.trade == trade for one in plan.chosen)), spanned(hours))
             for trade, hours in plan.by_trade.items()
         ),
-        begin=tuple(_begun(plan, places, linked=linked) for places in plan.together(first)[:BEGIN]),
+        begin=tuple(_begun(plan, places, linked=linked) for places in plan.together(sound)[:BEGIN]),
         errands=tuple(views[at] for at in listed),
         walking=walking,
         hidden=len(first) - len(listed),
@@ -163,6 +167,7 @@ def plan_view(plan: ErrandPlan, *, linked: bool = True, sentences: bool = True) 
         away_hidden=max(0, len(away) - DOUBTFUL),
         away_avoids=_share(_ratio(sum(plan.errands[at].avoided for at in away), plan)),
         curve=_curve(plan),
+        priced=bool(plan.terms.currency),
     )
 
 
@@ -179,9 +184,20 @@ def said_of(errand: Errand) -> tuple[str, ...]:
     return tuple(f"{one.object_number}: {one.sentence}" for one in errand.objects)
 
 
+def title_of(errand: Errand) -> str:
+    """Return what an errand is called: where sizes are doubtful, that these are checked before it is begun."""
+    title = said(clean(errand.title))
+    return _("Check the sizes first, then: %(what)s") % {"what": title} if errand.check else title
+
+
 def number(value: float) -> str:
     """Write hours or a cost: three digits where it is small, whole numbers from 100 on."""
     return count(round(value)) if value >= 99.5 else significant(value, 3 if value >= 10.0 else 2)
+
+
+def priced(amount: str, currency: str) -> str:
+    """Return a cost with its currency, where the museum names one."""
+    return f"{amount}\u00a0{clean(currency)}" if currency else amount
 
 
 def trade_word(trade: str) -> str:
@@ -210,14 +226,14 @@ def _errand(plan: ErrandPlan, at: int, *, linked: bool, sentences: bool) -> Erra
         number=at + 1,
         gallery=clean(one.gallery),
         case=clean(one.case),
-        title=said(clean(one.title)),
+        title=title_of(one),
         told=tuple(clean(_brief(text)) for text in told[:NAMED]),
         objects=tuple(_named(each, linked=linked) for each in named),
         more=len(one.objects) - len(named),
         trade=_TRADES[one.trade](),
         hours=number(one.hours.value),
         hours_span=_("%(low)s to %(high)s") % {"low": number(one.hours.low), "high": number(one.hours.high)},
-        cost=number(one.cost.value),
+        cost=priced(number(one.cost.value), plan.terms.currency),
         avoids="" if one.prepares else _share(_ratio(one.avoided, plan)),
         first="" if one.needs is None else said(clean(plan.errands[one.needs].title)),
     )
@@ -227,7 +243,7 @@ def _begun(plan: ErrandPlan, places: Sequence[int], *, linked: bool) -> BeginVie
     some = [plan.errands[at] for at in places]
     objects = [one for errand in some for one in errand.objects]
     return BeginView(
-        said(clean(some[0].title)),
+        title_of(some[0]),
         clean(some[0].gallery),
         clean(some[0].case),
         tuple(_named(one, linked=linked) for one in objects[:FEW]),
@@ -257,8 +273,8 @@ def _ratio(avoided: float, plan: ErrandPlan) -> float:
 def _share(share: float) -> str:
     """Write a share of the expected loss."""
     if share <= 0.0:
-        return "0\u00a0%"
-    return f"{100.0 * share:.0f}\u00a0%" if share >= 0.095 else f"{significant(100.0 * share, 2)}\u00a0%"
+        return percent(0.0)
+    return percent(share) if share >= 0.095 else f"{significant(100.0 * share, 2)}\u00a0%"
 
 
 def _lede(plan: ErrandPlan) -> str:
@@ -283,7 +299,7 @@ def _lede(plan: ErrandPlan) -> str:
         if trade in limits.trades
     ]
     if limits.cost is not None:
-        there.append(_("a cost of %(cost)s") % {"cost": number(limits.cost)})
+        there.append(_("a cost of %(cost)s") % {"cost": priced(number(limits.cost), plan.terms.currency)})
     told = _("With %(there)s you avoid %(share)s of what an earthquake of this level is expected to cost.")
     return told % {"there": _joined(there), "share": avoided}
 
@@ -309,7 +325,7 @@ def _takes(plan: ErrandPlan) -> str:
         "galleries": galleries,
         "hours": _("%(hours)s hours (%(low)s to %(high)s)")
         % {"hours": number(plan.hours.value), "low": number(plan.hours.low), "high": number(plan.hours.high)},
-        "cost": spanned(plan.cost),
+        "cost": priced(spanned(plan.cost), plan.terms.currency),
     }
 
 
@@ -318,7 +334,7 @@ def _half(plan: ErrandPlan) -> str:
         return ""
     at = next(corner for corner in plan.curve if corner.avoided >= 0.5 * plan.choice.avoided)
     told = _("Half of that is avoided by the first %(hours)s hours, which cost %(cost)s.")
-    return told % {"hours": number(at.hours), "cost": number(at.cost)}
+    return told % {"hours": number(at.hours), "cost": priced(number(at.cost), plan.terms.currency)}
 
 
 def _gap(plan: ErrandPlan) -> str:

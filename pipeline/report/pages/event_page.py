@@ -9,6 +9,7 @@ from pipeline.report.language import Language, _, ngettext, said, speaking
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.environment import environment, fill
 from pipeline.report.text import clean, count, short, slug
+from pipeline.report.units import percent
 
 FIRST = 60
 """Objects that the page lists in each of its lists; the table beside it has all."""
@@ -232,7 +233,7 @@ def _listed(objects: Sequence[ObjectAnswer]) -> tuple[EventObject, ...]:
 
 
 def _percent(value: float) -> str:
-    return f"{100.0 * value:.0f}\u00a0%" if value >= 0.01 or value == 0.0 else "<1\u00a0%"
+    return percent(value) if value >= 0.01 or value == 0.0 else "<1\u00a0%"
 
 
 def _object(one: ObjectAnswer) -> EventObject:

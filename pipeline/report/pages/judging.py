@@ -18,7 +18,7 @@ from pipeline.report.plots.panel import Panel
 from pipeline.report.plots.scales import Scale
 from pipeline.report.plots.svg import path, picture, text, through, upright
 from pipeline.report.text import clean, count
-from pipeline.report.units import Units, significant
+from pipeline.report.units import Units, percent, significant
 
 _MOST = 2.0 * G
 """Right end of the picture's axis, m/s2."""
@@ -160,10 +160,10 @@ def _goodness(f: Fragility) -> str:
     said_so = told % {"samples": count(f.samples), "stripes": count(len(f.stripes))}
     if f.error is not None:
         told = _("By their number its median is known within %(error)s.")
-        said_so += " " + told % {"error": f"{100.0 * f.error:.0f} %"}
+        said_so += " " + told % {"error": percent(f.error)}
     if f.goodness is not None and f.deviance is not None:
         told = _("Deviance %(deviance)s with %(degrees)s degrees of freedom: by chance as large in %(share)s of cases.")
-        share = f"{100.0 * f.goodness:.0f}\u00a0%"
+        share = percent(f.goodness)
         said_so += " " + told % {"deviance": local(f"{f.deviance:.1f}"), "degrees": count(f.degrees), "share": share}
     if f.median_pgv is not None:
         told = (

@@ -7,7 +7,6 @@ from typing import Any
 from urllib.parse import quote
 from zoneinfo import ZoneInfo
 
-from pipeline.errors import FAULT
 from pipeline.report.language import Language, moment, speaking
 from pipeline.report.pages.environment import environment, fill, script_of
 from pipeline.report.pages.news import NewsView, kept_view
@@ -75,7 +74,7 @@ def landing_page(status: Mapping[str, Any], museum: str, language: Language, tim
             "state": status["state"],
             "since": _moment(status["since"], zone),
             "message": plain(status["message"])[:_MOST],
-            "fault": status["message"].startswith(FAULT),
+            "fault": status.get("fault", False),
             "report": "" if good is None else quote(good["report"]),
             "beside": "" if good is None else quote(good["report"].rpartition("/")[0]),
             "finished": Moment() if good is None else _moment(good["finished"], zone),

@@ -1,12 +1,11 @@
 """News of objects in plain words: what a night found changed, one object a line."""
 
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from pipeline.records import Band, Brief, NewsKind, ObjectChange, RunChanges, Settled, State
+from pipeline.records import Band, Brief, DecisionKind, NewsKind, ObjectChange, RunChanges, Settled, State
 from pipeline.report.language import _, ngettext, parted, said
 from pipeline.report.pages.chances import band_word, class_title
 from pipeline.report.pages.survey_words import missing_words
@@ -314,22 +313,19 @@ def _moved(one: ObjectChange) -> str:
 def _decided(one: ObjectChange) -> str:
     told = [
         (_("%(what)s, by %(who)s") if each.new else _("no longer in force: %(what)s, by %(who)s"))
-        % {"what": short(_matter(clean(each.matter)), 120), "who": short(each.who, 60)}
+        % {"what": short(_matter(each), 120), "who": short(each.who, 60)}
         for each in one.decided
     ]
     return parted(told)
 
 
-def _matter(matter: str) -> str:
+def _matter(one: Settled) -> str:
     """Return what was decided, in the words of who decides at the desk."""
-    found = _MATTER.fullmatch(matter)
-    if found is None:
-        return said(matter)
-    risk, named, end = found["risk"], found["class"], found["end"]
-    return (_("risk accepted") if risk else _("named: %(what)s") % {"what": class_title(named)}) + end
-
-
-_MATTER = re.compile(r"(?:(?P<risk>risk accepted)|class (?P<class>\w+))(?P<end>.*)")
+    if one.kind == DecisionKind.ACCEPT:
+        return _("risk accepted") + clean(one.about)
+    if one.kind == DecisionKind.CLASS:
+        return _("named: %(what)s") % {"what": class_title(one.object_class)} + clean(one.about)
+    return said(clean(one.matter))
 
 
 def _why(one: ObjectChange) -> str:
@@ -350,6 +346,9 @@ def _why(one: ObjectChange) -> str:
 
 def to_do(brief: Brief) -> str:
     """Say what to do about an object, in words that follow a colon."""
+    if brief.check:
+        # What is advised for sizes that nobody believes is not built.
+        return _("check its sizes first")
     if not brief.measure:
         return _("ask an engineer")
     known = _WORDS.get(brief.measure)

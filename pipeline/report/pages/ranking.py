@@ -5,7 +5,7 @@ from functools import cache
 from math import inf, isnan, log, log1p
 
 from pipeline import records
-from pipeline.analysis.stakes import doubtful, expected_loss, value_of
+from pipeline.analysis.stakes import expected_loss, to_check, value_of
 from pipeline.records import Assessment, Finding, Urgency, Verdict
 from pipeline.report.pages.views import Judged, State
 from pipeline.report.text import encodable
@@ -32,11 +32,6 @@ def at_level(assessment: Assessment, level: str) -> Assessment:
         findings=tuple(f for f in assessment.findings if f.level == level),
         likelihoods=tuple(one for one in assessment.likelihoods if one.level == level),
     )
-
-
-def to_check(assessment: Assessment) -> bool:
-    """Say whether the record of an object is to be checked before anything is done about it."""
-    return assessment.likelihood is not None and doubtful(assessment.scene) > 0.0
 
 
 def finding_state(finding: Finding) -> Judged:

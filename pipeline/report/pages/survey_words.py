@@ -1,14 +1,13 @@
 """Survey in words, what is worth measuring: for one object, for a gallery as a list, for the museum in a sentence."""
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.analysis.survey import ENDS, measurables
-from pipeline.records import Assessment, MeasurementRequest, Tally
+from pipeline.records import Assessment, MeasurementRequest, Tally, times_too_thin
 from pipeline.report.language import _, local, ngettext, said
 from pipeline.report.pages.views import ObjectView, SurveyView, WishView
 from pipeline.report.text import clean, count, words
-from pipeline.report.units import Units, significant
+from pipeline.report.units import Units, percent, significant
 
 SURVEY_SECONDS = "survey_seconds"
 """The setting of a run that says what its survey cost."""
@@ -73,17 +72,14 @@ def survey_sentence(tally: Tally, seconds: float) -> str:
 
 def missing_words(missing: str) -> str:
     """Return what is missing in a record as who keeps it says it."""
-    slender = _SLENDER.fullmatch(missing)
-    if slender:
+    times = times_too_thin(missing)
+    if times is not None:
         told = _(
             "how it is held (it is %(times)s times as high as it is deep: "
             "it cannot stand by itself, or a measure is wrong)"
         )
-        return told % {"times": slender[1]}
+        return told % {"times": times}
     return said(words(missing))
-
-
-_SLENDER = re.compile(r"support \(it is (\d+) times as high as it is deep: .*\)")
 
 
 def _label(field: str) -> str:
@@ -97,7 +93,7 @@ def _effect(request: MeasurementRequest) -> str:
     if request.settles_nothing:
         return _("alone it settles nothing")
     if request.drawn:
-        return _("changes what is decided with a chance of %(share)s") % {"share": f"{min(request.settles, 1.0):.0%}"}
+        return _("changes what is decided with a chance of %(share)s") % {"share": percent(min(request.settles, 1.0))}
     if request.open == 1:
         # The mean over three trials that either settle the verdict or do not: a whole number of them.
         return _("settles it in %(number)s of %(trials)s trials") % {

@@ -4,10 +4,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 
+from pipeline.analysis.stakes import to_check
 from pipeline.records import Assessment, Errors, Finding, Found, Tally, Urgent, Verdict
 from pipeline.report.pages.chances import open_for
 from pipeline.report.pages.class_curves import curve_sums
-from pipeline.report.pages.ranking import at_level, finding_order, state_of, to_check, urgency
+from pipeline.report.pages.ranking import at_level, finding_order, state_of, urgency
 from pipeline.report.pages.views import STATES, State
 from pipeline.report.text import encodable
 
