@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import sqlite3
+import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
@@ -36,6 +37,9 @@ ROOMY = 8e9
 
 def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
+        # Hundreds of processes are started cold: where nothing that is compiled is kept, each compiles all of Kouros.
+        if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
+            sys.dont_write_bytecode = False
         memory = Path("/dev/shm")  # noqa: S108 - what is made there is made by mkdtemp
         if "TMPDIR" not in os.environ and memory.is_dir() and min(disk_usage(memory).free, _available()) > ROOMY:
             os.environ["TMPDIR"], tempfile.tempdir = str(memory), None
