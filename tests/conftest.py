@@ -37,7 +37,7 @@ ROOMY = 8e9
 
 def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
-        # Hundreds of processes are started cold: where nothing that is compiled is kept, each compiles all of Kouros.
+        # Where nothing that is compiled is kept, each process that is started cold compiles all of Kouros.
         if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
             sys.dont_write_bytecode = False
         memory = Path("/dev/shm")  # noqa: S108 - what is made there is made by mkdtemp

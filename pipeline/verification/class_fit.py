@@ -116,7 +116,7 @@ def _show(item: Item, share: float, out: dict[tuple[str, ...], float]) -> None:
 def fit(objects: Sequence[Labelled]) -> Weights:
     """Return the weights that make the labels most probable, less the penalties."""
     classes = CLASSES
-    # Many objects show the same: together they are one case of as much weight, which halves the work.
+    # Many objects show the same: together they are one case of as much weight, two fifths fewer.
     alike: dict[tuple[tuple[str, ...], int], float] = {}
     for one in objects:
         for signs, weight in _shown(one).items():
