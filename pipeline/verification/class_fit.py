@@ -119,10 +119,10 @@ def fit(objects: Sequence[Labelled]) -> Weights:
     # Many objects show the same: together they are one case of as much weight, two fifths fewer.
     alike: dict[tuple[tuple[str, ...], int], float] = {}
     for one in objects:
-        for signs, weight in _shown(one).items():
+        for signs, share in _shown(one).items():
             case = signs, classes.index(one.object_class)
-            alike[case] = alike.get(case, 0.0) + weight
-    cases = [(*case, weight) for case, weight in alike.items()]
+            alike[case] = alike.get(case, 0.0) + share
+    cases = [(*case, share) for case, share in alike.items()]
     columns = {sign: at for at, sign in enumerate(sorted({sign for signs, _, _ in cases for sign in signs}))}
     indices = [columns[sign] for signs, _, _ in cases for sign in signs]
     starts = np.cumsum([0, *(len(signs) for signs, _, _ in cases)])
