@@ -40,6 +40,8 @@ def pytest_configure(config: pytest.Config) -> None:
         # Where nothing that is compiled is kept, each process that is started cold compiles all of Kouros.
         if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
             sys.dont_write_bytecode = False
+        # There are as many processes as cores: more threads of OpenBLAS wait for each other, and do so in loops.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         memory = Path("/dev/shm")  # noqa: S108 - what is made there is made by mkdtemp
         if "TMPDIR" not in os.environ and memory.is_dir() and min(disk_usage(memory).free, _available()) > ROOMY:
             os.environ["TMPDIR"], tempfile.tempdir = str(memory), None

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.sparse import csr_matrix
 from scipy.special import logsumexp
+from threadpoolctl import threadpool_limits
 
 from pipeline.analysis.evidence import AGREES, BIAS, GALLERY, SAYING, SILENT, Weights, read_weights, shares_of, signs_of
 from pipeline.analysis.rules import PICTURES, readings
@@ -153,9 +154,10 @@ def fit(objects: Sequence[Labelled]) -> Weights:
         )
 
     start = np.zeros(size + len(SAYING))
-    found = minimize(
-        loss, start, jac=True, method="L-BFGS-B", options={"maxiter": 400, "maxfun": 500, "ftol": 1e-8, "gtol": 1e-3}
-    )
+    options = {"maxiter": 400, "maxfun": 500, "ftol": 1e-8, "gtol": 1e-3}
+    # Threads of BLAS wait for each other more than they compute on vectors of this size.
+    with threadpool_limits(limits=1, user_api="blas"):
+        found = minimize(loss, start, jac=True, method="L-BFGS-B", options=options)
     of_sign = found.x[:size].reshape(len(columns), len(classes))
     return Weights(
         classes,

@@ -33,9 +33,11 @@ def cluster() -> Iterator[LocalCluster]:
 
 @pytest.fixture(scope="module")
 def processes() -> Iterator[WorkerPool]:
-    """Two processes of this machine."""
-    with pool(processes=2) as made:
-        yield made
+    """Two processes of this machine, started where nobody else has seen to it that BLAS has one thread."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("OPENBLAS_NUM_THREADS", "2")
+        with pool(processes=2) as made:
+            yield made
 
 
 @pytest.fixture(params=["processes", "cluster"])
