@@ -154,10 +154,15 @@ def fit(objects: Sequence[Labelled]) -> Weights:
         )
 
     start = np.zeros(size + len(SAYING))
-    options = {"maxiter": 400, "maxfun": 500, "ftol": 1e-8, "gtol": 1e-3}
     # Threads of BLAS wait for each other more than they compute on vectors of this size.
     with threadpool_limits(limits=1, user_api="blas"):
-        found = minimize(loss, start, jac=True, method="L-BFGS-B", options=options)
+        found = minimize(
+            loss,
+            start,
+            jac=True,
+            method="L-BFGS-B",
+            options={"maxiter": 400, "maxfun": 500, "ftol": 1e-8, "gtol": 1e-3},
+        )
     of_sign = found.x[:size].reshape(len(columns), len(classes))
     return Weights(
         classes,
