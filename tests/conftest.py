@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import sqlite3
+import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
@@ -36,6 +37,11 @@ ROOMY = 8e9
 
 def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
+        # Where nothing that is compiled is kept, each process that is started cold compiles all of Kouros.
+        if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
+            sys.dont_write_bytecode = False
+        # There are as many processes as cores: more threads of OpenBLAS wait for each other, and do so in loops.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         memory = Path("/dev/shm")  # noqa: S108 - what is made there is made by mkdtemp
         if "TMPDIR" not in os.environ and memory.is_dir() and min(disk_usage(memory).free, _available()) > ROOMY:
             os.environ["TMPDIR"], tempfile.tempdir = str(memory), None

@@ -8,7 +8,7 @@ import sqlite3
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -18,6 +18,7 @@ from sqlalchemy import Engine, MetaData, create_engine, event
 from sqlalchemy.engine import URL, ExceptionContext, make_url
 from sqlalchemy.exc import ArgumentError, DisconnectionError, OperationalError
 from sqlalchemy.pool import NullPool, QueuePool
+from sqlalchemy.util import LRUCache
 
 from pipeline.errors import InputError, KourosError
 
@@ -35,6 +36,9 @@ METADATA = MetaData(
     }
 )
 """All of Kouros's own tables, the inventory's (here) and the results' (in store)."""
+
+PATIENCE_S = 10.0
+"""How long is waited for another process that has SQLite's file locked."""
 
 
 def database_url(where: str | Path) -> URL:
@@ -93,10 +97,28 @@ def open_database(where: str | Path, *, keeping: int = 0) -> Engine:
         engine = create_engine(url, poolclass=NullPool)
     if lite:
         event.listen(engine, "connect", _prepare_sqlite)
-        event.listen(engine, "handle_error", _say_no_room)
         if keeping:
             event.listen(engine, "checkout", partial(_same_file, Path(str(url.database))))
+        _share(engine)
     return engine
+
+
+@cache
+def _common() -> Engine:
+    """The engine whose dialect all files have in common; it has asked SQLite for its version."""
+    engine = create_engine("sqlite://", poolclass=NullPool)
+    event.listen(engine, "handle_error", _say_no_room)
+    engine.connect().close()
+    return engine
+
+
+_COMPILED: LRUCache[Any, Any] = LRUCache(1000)
+
+
+def _share(engine: Engine) -> None:
+    """Let a file's engine take statements that were compiled for another one: they are kept by dialect."""
+    engine.dialect = _common().dialect
+    engine.update_execution_options(compiled_cache=_COMPILED)
 
 
 class DatabaseFileError(KourosError):
@@ -208,8 +230,8 @@ def open_for_reading(url: URL) -> Engine:
         # A file whose changes go to a log of their own is locked by files beside it: without one, nobody is at work.
         mode = "ro&immutable=1" if folder is None and _is_logged(file) else "ro"
         where = f"file:{quote(str(there))}?mode={mode}"
-        lite = create_engine(url, poolclass=NullPool, creator=lambda: sqlite3.connect(where, uri=True, timeout=10.0))
-        event.listen(lite, "handle_error", _say_no_room)
+        lite = create_engine(url, poolclass=NullPool, creator=lambda: sqlite3.connect(where, PATIENCE_S, uri=True))
+        _share(lite)
         if folder is not None:
             weakref.finalize(lite, folder.cleanup)
         return lite
@@ -235,7 +257,7 @@ def _unsettled(file: Path) -> bool:
     if not file.with_name(f"{file.name}-journal").is_file():
         return False
     # A journal is a living process's, or one that died left it: only SQLite's own locks tell.
-    probe = sqlite3.connect(f"file:{quote(str(file))}?mode=ro", uri=True, timeout=10.0)
+    probe = sqlite3.connect(f"file:{quote(str(file))}?mode=ro", uri=True, timeout=PATIENCE_S)
     try:
         probe.execute("SELECT count(*) FROM sqlite_master").fetchone()
     except sqlite3.OperationalError:
@@ -277,5 +299,5 @@ def _same_file(file: Path, _connection: Any, record: Any, _proxy: Any) -> None:
 def _prepare_sqlite(connection: Any, _record: Any) -> None:
     cursor = connection.cursor()
     cursor.execute("PRAGMA foreign_keys = ON")
-    cursor.execute("PRAGMA busy_timeout = 10000")
+    cursor.execute(f"PRAGMA busy_timeout = {round(PATIENCE_S * 1000)}")
     cursor.close()

@@ -16,6 +16,9 @@ from pipeline.execute.workers import AHEAD, Pending, PoolError, Result, Shared, 
 
 logger = logging.getLogger(__name__)
 
+PATIENCE_S = 10.0
+"""How long a scheduler may take to answer."""
+
 
 class ClusterPool:
     """Works on a Dask cluster, whose scheduler does a task again where the worker that had it died."""
@@ -79,7 +82,7 @@ def cluster_pool(address: str) -> Iterator[ClusterPool]:
     # The tasks are as large as they are meant to be.
     with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1GB"}):
         try:
-            client = Client(address, timeout="10s", set_as_default=False)
+            client = Client(address, timeout=PATIENCE_S, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as problem:
             raise PoolError(
                 f"no Dask cluster answers at {address} ({problem}); start it, or correct its address"

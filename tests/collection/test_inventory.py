@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sqlalchemy import Engine, func, select
+from sqlalchemy import Column, Engine, MetaData, String, Table, func, insert, select
+from sqlalchemy.engine.interfaces import CacheStats
 from sqlalchemy.exc import IntegrityError
 
-from pipeline.collection.database import METADATA, open_database
+from pipeline.collection.database import METADATA, DamagedDatabaseError, open_database
 from pipeline.collection.errors import CollectionError, ShrunkError
 from pipeline.collection.inventory import (
     IMPORT_BATCH,
@@ -295,3 +296,21 @@ def test_a_kept_connection_leaves_a_file_that_another_took_the_place_of(tmp_path
     backup.replace(file)
     assert len(read_inventory(engine)) == 2
     engine.dispose()
+
+
+def test_a_statement_compiled_for_one_file_serves_another_which_is_asked_itself(tmp_path: Path) -> None:
+    """The errors of each name its own file, too."""
+    word = Table("word", MetaData(), Column("said", String))
+    hits = []
+    for name in ("a", "b"):
+        engine = open_database(tmp_path / name)
+        word.create(engine)
+        with engine.begin() as connection:
+            connection.execute(insert(word), {"said": name})
+            asked = connection.execute(select(word).where(word.c.said != "nothing"))
+            hits.append(asked.context.cache_hit)
+            assert asked.scalars().all() == [name]
+        (tmp_path / name).write_bytes(b"no database, but as long as one is at least. " * 100)
+        with pytest.raises(DamagedDatabaseError, match=f"/{name} is damaged"), engine.connect() as connection:
+            connection.execute(select(word))
+    assert hits == [CacheStats.CACHE_MISS, CacheStats.CACHE_HIT]

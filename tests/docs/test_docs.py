@@ -39,6 +39,8 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         patch.syspath_prepend(ROOT / "pipeline" / "_alias")  # as an editable install has it on the path
         patch.setenv("KOUROS_CACHE", str(folder / "cache"))
         patch.setenv("KOUROS_WHO", "A. Reader")
+        # Spectra of few periods: no page tells a number of them.
+        patch.setattr("pipeline.motions.inspection.SPECTRUM_POINTS", 12)
         here = Path.cwd()
         yield made
         os.chdir(here)

@@ -33,9 +33,11 @@ def cluster() -> Iterator[LocalCluster]:
 
 @pytest.fixture(scope="module")
 def processes() -> Iterator[WorkerPool]:
-    """Two processes of this machine."""
-    with pool(processes=2) as made:
-        yield made
+    """Two processes of this machine, started where nobody else has seen to it that BLAS has one thread."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("OPENBLAS_NUM_THREADS", "2")
+        with pool(processes=2) as made:
+            yield made
 
 
 @pytest.fixture(params=["processes", "cluster"])
@@ -247,7 +249,8 @@ def test_no_process_outlives_the_one_that_started_it(tmp_path: Path) -> None:
     assert until(lambda: not any(alive(pid) for pid in pids), 5.0)
 
 
-def test_a_cluster_that_does_not_answer_is_named() -> None:
+def test_a_cluster_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pipeline.execute.cluster.PATIENCE_S", 1.0)
     with (
         pytest.raises(PoolError, match=r"no Dask cluster answers at tcp://127\.0\.0\.1:9 "),
         pool(address="tcp://127.0.0.1:9"),

@@ -32,10 +32,11 @@ def threads_of_blas() -> set[int]:
 
 
 def test_the_last_to_leave_gives_the_threads_back() -> None:
-    before = threads_of_blas()
-    with ThreadPoolExecutor(1) as other, one_thread():
-        with one_thread():
+    with threadpool_limits(limits=2, user_api="blas"):
+        assert threads_of_blas() == {2}
+        with ThreadPoolExecutor(1) as other, one_thread():
+            with one_thread():
+                assert threads_of_blas() == {1}
             assert threads_of_blas() == {1}
-        assert threads_of_blas() == {1}
-        assert other.submit(threads_of_blas).result() == {1}
-    assert threads_of_blas() == before
+            assert other.submit(threads_of_blas).result() == {1}
+        assert threads_of_blas() == {2}

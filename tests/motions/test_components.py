@@ -89,8 +89,9 @@ def test_two_earthquakes_of_one_station_are_refused(tmp_path, write_manifest):
     refused(kiknet(tmp_path, write_manifest, origin="2018/01/24 19:49:55"), "a.EW2", "a.UD", "earthquake of 2018-01-24")
 
 
-def test_a_magnitude_that_the_header_brought_raises_no_corner(tmp_path, write_manifest):
+def test_a_magnitude_that_the_header_brought_raises_no_corner(tmp_path, write_manifest, monkeypatch):
     """By its magnitude of 3 a small source would take the corner up, and the motion be weaker; a person may say so."""
+    monkeypatch.setattr("pipeline.motions.inspection.SPECTRUM_POINTS", 2)
     files = {"a.EW": ("E-W", "x", 90), "a.NS": ("N-S", "y", 0), "a.UD": ("U-D", "z", "up")}
     for name, (direction, _, _) in files.items():
         knet(tmp_path / name, direction)

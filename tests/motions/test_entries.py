@@ -107,7 +107,10 @@ def two(folder: Path, text: str = HORIZONTAL) -> Path:
     return folder
 
 
-def test_a_record_without_a_vertical_shakes_horizontally_and_says_so(tmp_path: Path) -> None:
+def test_a_record_without_a_vertical_shakes_horizontally_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pipeline.motions.inspection.SPECTRUM_POINTS", 2)
     folder = two(tmp_path / "two")
     Draft202012Validator(manifest_schema()).validate(tomllib.loads((folder / "manifest.toml").read_text()))
     site = read_site(folder)

@@ -59,7 +59,8 @@ def test_the_vertical_starts_with_what_the_filter_did_before():
     assert made.start[:2] == (0.5, 0.0)
 
 
-def test_an_absent_vertical_is_told(three, write_manifest):
+def test_an_absent_vertical_is_told(three, write_manifest, monkeypatch):
+    monkeypatch.setattr("pipeline.motions.inspection.SPECTRUM_POINTS", 2)
     folder = two(three, write_manifest, "absent")
     (motion,) = read_motion(folder)
     assert not motion.acceleration[2].any()
@@ -67,7 +68,8 @@ def test_an_absent_vertical_is_told(three, write_manifest):
     assert "No vertical component was recorded: the motion has none." in processing(inspect(folder)[0])
 
 
-def test_an_estimated_vertical_is_told_wherever_it_is_used(three, write_manifest):
+def test_an_estimated_vertical_is_told_wherever_it_is_used(three, write_manifest, monkeypatch):
+    monkeypatch.setattr("pipeline.motions.inspection.SPECTRUM_POINTS", 2)
     folder = two(three, write_manifest, "estimated")
     (motion,) = read_motion(folder)
     assert motion.acceleration[2].any()

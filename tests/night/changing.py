@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
 
+import pytest
 from sqlalchemy import insert, select
 
 from pipeline import tables
@@ -24,6 +25,7 @@ from pipeline.night.run import Selection, run
 from pipeline.operations.workspace import open_workspace
 from pipeline.quantities import G
 from pipeline.records import DecisionKind
+from pipeline.report.files import exports, page_renderer, report_writer
 from pipeline.report.files.manifest import read_manifest
 from pipeline.settings import Settings, load_settings, template
 from pipeline.store.decisions import decisions_in_force
@@ -48,6 +50,14 @@ FURNITURE = (
     "showcase,a showcase,{0},{0},{0},0.05,0.05,0.05,0,hammer tests\n"
 )
 FRICTION = "object_material,surface_material,value,low,high,source\nMarble,Formica,{0},{0},{0},tilt tests\n"
+
+
+def leave_out_pages(patch: pytest.MonkeyPatch) -> None:
+    """Leave out what costs much of a report and is read by people alone: HTML, sheets, the workbook."""
+    for module in (page_renderer, report_writer):
+        patch.setattr(module, "fill", lambda *_: "")
+    patch.setattr(page_renderer, "sheet_pdf", lambda *_: b"")
+    patch.setattr(exports, "WORKBOOK_ROWS", 0)
 
 
 def vessels(clearance: float) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from distributed import LocalCluster
+from threadpoolctl import threadpool_limits
 
 from pipeline.night import scheduler, staff
 from pipeline.night.unit_tasks import Assessments
@@ -24,9 +25,10 @@ OBJECTS = vases(galleries=8, each=4)
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
-    """The museum after a night of this process alone."""
+    """The museum after a night of this process alone, whose BLAS has two threads, where that of workers has one."""
     settings = museum_of(tmp_path_factory.mktemp("crews") / "alone", OBJECTS)
-    night(settings)
+    with threadpool_limits(limits=2, user_api="blas"):
+        night(settings)
     return settings
 
 

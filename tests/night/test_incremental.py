@@ -16,8 +16,7 @@ from pipeline.night import scheduler, staff
 from pipeline.night.context import RunContext
 from pipeline.night.paging import paged
 from pipeline.night.unit_tasks import Assessments, UnitTask, assess_units
-from pipeline.report.files import page_renderer, report_writer
-from tests.night.changing import Changing, exported
+from tests.night.changing import Changing, exported, leave_out_pages
 
 pytestmark = pytest.mark.slow_file
 
@@ -41,7 +40,7 @@ class Killed(BaseException):
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pages of five objects and batches of four, in this process, stored as they come.
 
-    What costs most and is not compared is left out: HTML.  A motion's pulse is found once.
+    What costs most and is not compared is left out: HTML, sheets, the workbook.  A motion's pulse is found once.
     """
     for module in (scheduler, staff):
         monkeypatch.setattr(module, "FEW", 4)
@@ -50,8 +49,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scheduler, "_SECONDS", 0.0)
     monkeypatch.setattr(staff, "pool", lambda **_: pool())
     monkeypatch.setattr(scheduler, "paged", partial(paged, most=5))
-    monkeypatch.setattr(page_renderer, "fill", lambda *_: "")
-    monkeypatch.setattr(report_writer, "fill", lambda *_: "")
+    leave_out_pages(monkeypatch)
     monkeypatch.setattr(site, "shahi_baker_pulse", lambda velocity, dt: pulse(velocity.tobytes(), dt))
 
 

@@ -24,6 +24,7 @@ from pipeline.night.run import run
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import Decision, DecisionKind
 from pipeline.report.errors import ReportWarning
+from pipeline.report.files import exports
 from pipeline.report.files.manifest import MANIFEST, PARTS
 from pipeline.settings import KEPT, load_settings, template
 from pipeline.store.decisions import add_decision
@@ -196,7 +197,9 @@ def content(folder: Path) -> list[object] | None:
         return None
 
 
-def test_no_damage_to_what_is_kept_goes_unnoticed(museum: Path) -> None:
+def test_no_damage_to_what_is_kept_goes_unnoticed(museum: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # The workbook, which is made of the exports and compared here with nothing, is a sixth of such a night.
+    monkeypatch.setattr(exports, "WORKBOOK_ROWS", 0)
     place = museum.with_name("museum")
 
     def copy() -> Path:
@@ -224,8 +227,8 @@ def test_no_damage_to_what_is_kept_goes_unnoticed(museum: Path) -> None:
         same = came.report == whole.report
         outcomes["refused" if came.refused else "said" if came.said else "equal" if same else "in silence"] += 1
         # What changed since the run before cannot be said where that is damaged: the exports are the same even then.
-        exports = all(came.report.get(name) == whole.report[name] for name in EXPORTS)
-        if not came.refused and not (exports and (came.said or same)):
+        listed = all(came.report.get(name) == whole.report[name] for name in EXPORTS)
+        if not came.refused and not (listed and (came.said or same)):
             unnoticed.append(f"{damage}: {came.said}")
     print(dict(outcomes))
     assert not unnoticed

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import pytest
 
+from pipeline.collection import database
 from pipeline.collection.database import open_database
 from pipeline.store.runs import list_runs
 
@@ -106,7 +107,10 @@ def test_a_full_disk_at_any_stage(nights: Nights, small_disk: Path, room: int) -
     resumes(folder, nights)
 
 
-def test_a_locked_database_is_named_and_the_report_stays(museum: Path, nights: Nights) -> None:
+def test_a_locked_database_is_named_and_the_report_stays(
+    museum: Path, nights: Nights, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(database, "PATIENCE_S", 0.2)
     with sqlite3.connect(museum / "kouros.sqlite", isolation_level=None) as other:
         other.execute("BEGIN EXCLUSIVE")
         done = within(museum, "run")
