@@ -39,7 +39,7 @@ def rejected(advice: Recommendation) -> Sequence[str]:
 
 
 BLOCK = Item(
-    "1", "G", title="Block", support=Support.FREESTANDING, furniture=Furniture.FLOOR,
+    "1", "G", title="Block", object_name="Trial body", support=Support.FREESTANDING, furniture=Furniture.FLOOR,
     height_m=0.2, width_m=0.6, depth_m=0.6, base_width_m=0.6,
     base_depth_m=0.6, cg_height_m=0.1, mass_kg=20.0, friction=0.1, clearance_m=0.02, section_shape="rectangle",
     section_width_m=0.3, section_depth_m=0.3, allowable_stress_pa=5e6, medium="Bronze", frequency_hz=60.0,

@@ -110,6 +110,14 @@ def test_wax_is_not_put_on_what_it_harms(motion: Motion, medium: str) -> None:
     assert any(text.startswith("Microcrystalline wax: it harms ") for text in advice.rejected)
 
 
+def test_nothing_is_stuck_under_legs(motion: Motion) -> None:
+    """What a mount-maker would not do, though dots under the whole of its footing would hold a chair."""
+    advice = solve(replace(LIGHT, object_name="chair", title="Chair"), motion)
+    assert advice.measure not in ("wax", "putty")
+    legs = "it stands on legs, which have no room for it under them"
+    assert {f"Microcrystalline wax: {legs}", f"Museum putty: {legs}"} <= set(advice.rejected)
+
+
 def test_the_material_of_the_base_is_what_counts(motion: Motion) -> None:
     """A plaster bust on a bronze base: wax touches the bronze, on which nothing is known against it."""
     weak = motion.scaled(0.6, "0.42 g")

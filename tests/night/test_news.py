@@ -132,7 +132,10 @@ def test_each_kind_of_news_is_told_of_its_object(museum: Path) -> None:
             assert (None if brief is None else (brief.state, brief.band)) == lists.get(number), number
     said = sentences(changes, 100)
     assert "Fixed: 1922.9 Amphora (clamped)." in said
-    assert "Worse: 5.1 Vase: was fine, is in danger (its record changed: height, width, depth): tie it down." in said
+    assert (
+        "Worse: 5.1 Vase: was fine, is in danger (its record changed: height, width, depth): check its sizes first."
+        in said
+    )
     assert "Gone from display: 5.2 Vase (no longer in the records)." in said
     assert "Decided: 7.8 Vase: risk accepted, by Ann." in said
     assert [line for line in said if line.startswith("New and in danger: 2026.1 <img")]

@@ -20,7 +20,7 @@ _MOST = 200
 """Measurements of one cell."""
 
 
-class _Said(NamedTuple):
+class _LongCell(NamedTuple):
     """A measurement in the words of its row."""
 
     kind: str
@@ -121,13 +121,13 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
         yield Row(place, row.line, row.cells + [""] * (width + len(COLUMNS) - len(row.cells)), row.fault)
 
 
-def _apart(row: Row, places: tuple[int, int, int | None, int | None], separator: str) -> Iterator[_Said]:
+def _apart(row: Row, places: tuple[int, int, int | None, int | None], separator: str) -> Iterator[_LongCell]:
     """Yield each measurement of a row; one cell says several in the order of the others, its last for all behind it."""
     fault = next((row.faults[at] for at in places[:2] if at in row.faults), None)
     cells = ["" if at is None else row.cells[at] for at in places]
     if not separator or fault is not None:
         kind, value, unit, part = cells
-        yield _Said(kind, value, unit, part, fault)
+        yield _LongCell(kind, value, unit, part, fault)
         return
     pieces = [[piece.strip() for piece in cell.split(separator, _MOST)] for cell in cells]
     uneven = len(pieces[0]) != len(pieces[1])
@@ -137,10 +137,10 @@ def _apart(row: Row, places: tuple[int, int, int | None, int | None], separator:
     )
     for at, kind in enumerate(pieces[0]):
         value, unit, part = (one[min(at, len(one) - 1)] for one in pieces[1:])
-        yield _Said(kind, value, unit, part, why if uneven else None)
+        yield _LongCell(kind, value, unit, part, why if uneven else None)
 
 
-def _measure(found: _Gathered, said: _Said) -> None:
+def _measure(found: _Gathered, said: _LongCell) -> None:
     if said.fault is not None:
         found.measured.refuse(kind_of(said.kind) or "other_measurements", *said.fault)
         return

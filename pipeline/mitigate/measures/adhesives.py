@@ -3,6 +3,8 @@
 from math import pi
 
 from pipeline.mitigate.measures.fixings import Fixing, Reach, dot
+from pipeline.mitigate.proposals import Deficiency, Proposal, refused
+from pipeline.mitigate.trials import TrialRunner
 from pipeline.records import Scene
 
 LEVER = 2.0 / 3.0
@@ -25,6 +27,13 @@ class _Dots(Fixing):
         half = scene.parameters["half_width"]
         area = pieces * dot(size)
         return Reach(area, LEVER * area * (half.low if worst else half.value))
+
+    def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
+        """Propose dots, unless it stands on legs: its footing is taken as one, and there are only their ends."""
+        row = runner.values.classes.get(one.scene.object_class)
+        if row is not None and row.section == "legs":
+            return refused("it stands on legs, which have no room for it under them")
+        return super().propose(one, runner)
 
     def room(self, scene: Scene, worst: bool) -> float:
         """Return the share of its footing: a round one across the narrower side, the least that it may be."""

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.motions.formats import blocks, header_facts, irregular, labels, record_text, trace_headers
-from pipeline.motions.formats.labels import Column, Head
+from pipeline.motions.formats.labels import HeadColumn, RecordHead
 from pipeline.motions.formats.record_text import Lines, Source, shown
 from pipeline.quantities import Array
 
@@ -83,7 +83,7 @@ class _Block:
 
     Attributes
     ----------
-    head : Head
+    head : RecordHead
         What the lines before them say.
     step : float or None
         In s, as the head says it, or a first line of number and step.
@@ -91,11 +91,11 @@ class _Block:
         A first column that is a time at even steps.
     data : array, shape (n, k)
         The other columns; one of all numbers, where they are one series.
-    columns : tuple of Column
+    columns : tuple of HeadColumn
         Their names, where the head has them.
     """
 
-    def __init__(self, head: Head, data: Array, columns: tuple[Column, ...]) -> None:
+    def __init__(self, head: RecordHead, data: Array, columns: tuple[HeadColumn, ...]) -> None:
         self.head, self.data, self.columns = head, data, columns
         self.step = head.step
         self.times: Array | None = None
@@ -179,7 +179,12 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
 
 
 def _timed(
-    table: Array, columns: tuple[Column, ...], head: Head, lines: Lines, start: int, form: tuple[str | None, bool]
+    table: Array,
+    columns: tuple[HeadColumn, ...],
+    head: RecordHead,
+    lines: Lines,
+    start: int,
+    form: tuple[str | None, bool],
 ) -> bool:
     if columns or not (head.step or head.count):
         # Where nothing else says the step, the first column has to.
@@ -242,7 +247,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     begins = None if head.start is None else trace_headers.start_time(lines, head.at["start"], *head.start)
     traces = []
     for number in chosen:
-        column = block.columns[number] if block.columns else Column("", "", "")
+        column = block.columns[number] if block.columns else HeadColumn("", "", "")
         unit = column.unit if column.kind else head.unit
         named = column.name and (width > 1 or labels.points(column.orientation))
         said = column.orientation if named else head.orientation

@@ -94,7 +94,7 @@ def unit_of(word: str) -> tuple[str, str]:
 
 
 @dataclass
-class Column:
+class HeadColumn:
     """A column as its head names it: its name, and what its unit is of, as `unit_of` says it."""
 
     name: str
@@ -109,7 +109,7 @@ class Column:
 
 
 @dataclass
-class Head:
+class RecordHead:
     """What a head says; None, or "", for what it does not.
 
     Attributes
@@ -132,7 +132,7 @@ class Head:
         The peak acceleration and one in its last digit, in m/s2.
     code : tuple of str
         Network, station, location and channel.
-    columns : tuple of Column
+    columns : tuple of HeadColumn
         As the last line names them.
     about : dict
         Latitude and longitude.
@@ -148,7 +148,7 @@ class Head:
     start: tuple[float, ...] | None = None
     peak: tuple[float, float] | None = None
     code: tuple[str, str, str, str] = ("", "", "", "")
-    columns: tuple[Column, ...] = ()
+    columns: tuple[HeadColumn, ...] = ()
     about: dict[str, float] = field(default_factory=dict)
 
     def says(self, lines: Lines, index: int, key: str, value: Any) -> None:
@@ -176,7 +176,7 @@ def turned(word: str) -> Orientation:
     return said if coded is None else coded
 
 
-def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Head:
+def read_head(lines: Lines, top: int, width: int, separator: str | None) -> RecordHead:
     """Return what the lines before the numbers say.
 
     Parameters
@@ -188,14 +188,14 @@ def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Head
 
     Returns
     -------
-    Head
+    RecordHead
 
     Raises
     ------
     FormatError
         Where two lines contradict each other.
     """
-    head = Head()
+    head = RecordHead()
     texts = [_text(lines.lines[index]) for index in range(top)]
     for index, text in enumerate(texts):
         _numbers(lines, index, text, head)
@@ -209,7 +209,7 @@ def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Head
     return head
 
 
-def columns_of(text: str, width: int, separator: str | None) -> tuple[Column, ...]:
+def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn, ...]:
     """Return the columns that a line names, none where it does not name so many."""
     text = text.lstrip("#%*| \ufeff").strip().rstrip(separator)
     cells = [cell.strip().strip('"').strip() for cell in (text.split(separator) if separator else _WORD.findall(text))]
@@ -221,7 +221,7 @@ def columns_of(text: str, width: int, separator: str | None) -> tuple[Column, ..
         name, word = (one[1], one[2] or "") if one else ("", "")
         is_time = number == 0 and bool(_TIME.match(name)) and (not word or word.lower() in _SECONDS)
         kind, unit = ("", word.lower()) if is_time else unit_of(word)
-        columns.append(Column(name, kind, unit, is_time))
+        columns.append(HeadColumn(name, kind, unit, is_time))
     # A sentence may have as many words as a row has numbers: a time, units or directions tell names from it.
     pointing = sum(points(one.orientation) for one in columns)
     named = columns[0].is_time or any(one.kind for one in columns) or 2 * pointing > len(columns)
@@ -246,7 +246,7 @@ def _text(raw: bytes) -> str:
     return "".join(letter if letter.isprintable() else " " for letter in text).rstrip()
 
 
-def _numbers(lines: Lines, index: int, text: str, head: Head) -> None:
+def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:
     if found := _STEP.search(text):
         head.says(lines, index, "step", seconds(found[3] or found[1]) * float(found[2]))
     elif (found := _RATE.search(text)) and float(found[2]) > 0.0:
@@ -262,7 +262,7 @@ def _numbers(lines: Lines, index: int, text: str, head: Head) -> None:
             head.about.setdefault(key, float(found[2]))
 
 
-def _words(lines: Lines, index: int, text: str, head: Head) -> None:
+def _words(lines: Lines, index: int, text: str, head: RecordHead) -> None:
     for word in _units(text):
         kind, unit = unit_of(word)
         if kind:
