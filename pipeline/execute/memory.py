@@ -23,7 +23,7 @@ def collecting_rarely() -> Iterator[None]:
         gc.set_threshold(*before)
 
 
-MANY = 200
+MANY = 5_000
 """Objects from which on a piece of work leaves enough behind to be looked for: a look takes up to half a second."""
 
 

@@ -66,7 +66,8 @@ DROP = 0.2
 """Least share of the range by which a channel falls to a level at once, and comes back, that is held for DROP_RUN
 samples to the last digit: what is beyond a limit was left out."""
 
-DROP_RUN = 3
+DROP_RUN, DROP_ALONE = 3, 8
+"""The same of one that is the only one (judgement): four zeros amid a weak record are a fault of its transmission."""
 
 
 def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
@@ -190,7 +191,8 @@ def _jumped(row: Array) -> tuple[int, str] | None:
     # The steps into a run of equal samples and out of it; at either end of the record there is none.
     into, out = beside[starts], beside[ends + 1]
     dropped = np.flatnonzero((ends - starts + 1 >= DROP_RUN) & (np.minimum(into, out) >= DROP * size))
-    if dropped.size:
+    longest = int((ends - starts + 1)[dropped].max(initial=0))
+    if dropped.size >= 2 or longest >= DROP_ALONE:
         wrong = "drops out, or is clipped: amid its shaking it falls to one level at once and comes back"
         return int(starts[dropped[0]]), f"{wrong}, {dropped.size} times"
     return None
