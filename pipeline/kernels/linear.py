@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import bare, inner
+from pipeline.kernels import bare, inlined, inner
 from pipeline.kernels.roots import trial
 
 NEGLIGIBLE = 1e-17
@@ -85,6 +85,14 @@ def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, fl
     return g, h, h1, h2
 
 
+@inlined
+def carried(
+    u: float, v: float, f0: float, f1: float, w: float, zeta: float, g: float, h: float, h1: float, h2: float
+) -> tuple[float, float]:
+    """Return what `advance` does, over a time whose `transition` is known."""
+    return u * g + v * h + f0 * h1 + f1 * h2, -u * w * w * h + v * (g - 2.0 * zeta * w * h) + f0 * h + f1 * h1
+
+
 @bare
 def advance(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float) -> tuple[float, float]:
     """Return displacement and velocity of an oscillator after a time.
@@ -108,7 +116,7 @@ def advance(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: 
     Nigam and Jennings (1969), as in `transition`.
     """
     g, h, h1, h2 = transition(w, zeta, t)
-    return u * g + v * h + f0 * h1 + f1 * h2, -u * w * w * h + v * (g - 2.0 * zeta * w * h) + f0 * h + f1 * h1
+    return carried(u, v, f0, f1, w, zeta, g, h, h1, h2)
 
 
 @inner

@@ -19,7 +19,7 @@ import numpy as np
 
 from pipeline.kernels import FIRST, inlined, inner, kernel
 from pipeline.kernels.lanes import LANES, lanes
-from pipeline.kernels.linear import advance, transition
+from pipeline.kernels.linear import advance, carried, transition
 from pipeline.kernels.oscillator import CHUNK, STRETCHES, STRIDE, interval_energy, next_state
 from pipeline.quantities import Array
 
@@ -207,7 +207,7 @@ def _search(
     known: Array,
 ) -> None:
     # Walk one oscillator from sample begin to sample end again, and search what can hold the longest resultant.
-    b, c, w = factor[B, k], factor[C, k], factor[W, k]
+    b, c, w, zeta = factor[B, k], factor[C, k], factor[W, k], factor[ZETA, k]
     twice, ramp, norm = factor[TWICE, k], factor[RAMP, k], factor[NORM, k]
     uu, uv, u0, u1 = factor[UU, k], factor[UV, k], factor[U0, k], factor[U1, k]
     vu, vv, v0, v1 = factor[VU, k], factor[VV, k], factor[V0, k], factor[V1, k]
@@ -220,7 +220,7 @@ def _search(
     spans = max(1, math.ceil(w * dt * (1.0 + twice) / PHASE))
     # Of one span, once for all: a stiff oscillator has hundreds of them in a sample interval.
     span = dt / spans
-    g, h, h1, h2 = transition(w, factor[ZETA, k], span)
+    g, h, h1, h2 = transition(w, zeta, span)
     # Roots of squares, as the lanes have them: hypot costs five times as much, and this is walked often.
     size = math.sqrt(ux * ux + uy * uy)
     for s in range(begin, end):
@@ -241,10 +241,8 @@ def _search(
                 for part_of in range(spans):
                     t = part_of * span
                     begin_x, begin_y = x0 + t * rise_x, y0 + t * rise_y
-                    then_ux = here_ux * g + here_vx * h - (begin_x * h1 + rise_x * h2)
-                    then_vx = here_vx * (g - c * h) - here_ux * b * h - (begin_x * h + rise_x * h1)
-                    then_uy = here_uy * g + here_vy * h - (begin_y * h1 + rise_y * h2)
-                    then_vy = here_vy * (g - c * h) - here_uy * b * h - (begin_y * h + rise_y * h1)
+                    then_ux, then_vx = carried(here_ux, here_vx, -begin_x, -rise_x, w, zeta, g, h, h1, h2)
+                    then_uy, then_vy = carried(here_uy, here_vy, -begin_y, -rise_y, w, zeta, g, h, h1, h2)
                     ends = math.sqrt(max(here_ux * here_ux + here_uy * here_uy, then_ux * then_ux + then_uy * then_uy))
                     if ends + gap_here >= known[SIZE]:
                         _longest(

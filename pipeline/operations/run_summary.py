@@ -218,17 +218,17 @@ def words_of(problem: BaseException) -> str:
     """Return an error in words: what people can mend as it says; a fault of Kouros as such, with its place."""
     if isinstance(problem, KeyboardInterrupt):
         return str(problem) or "it was stopped by hand"
-    if isinstance(problem, KourosError) or not isinstance(problem, Exception):
-        return str(problem)
     hint = "run again with --debug for the traceback"
-    if isinstance(problem, OSError) and problem.errno in _FULL:
+    if is_fault(problem):
+        return f"{FAULT}: {fault_words(problem)}; {hint}"
+    if isinstance(problem, KourosError) or not isinstance(problem, OSError):
+        return str(problem)
+    if problem.errno in _FULL:
         # Of a link and of a renaming the second is what was to be made.
         file = problem.filename2 or problem.filename
         where = "the disk" if file is None else f"the disk of {file}"
         return f"no space is left on {where}: make room (`kouros prune` removes old reports), then run again"
-    if isinstance(problem, OSError) and problem.errno is not None:
-        return f"{problem} ({type(problem).__name__}; {hint})"
-    return f"{FAULT}: {fault_words(problem)}; {hint}"
+    return f"{problem} ({type(problem).__name__}; {hint})"
 
 
 def summary_text(summary: Summary, folder: Path) -> str:

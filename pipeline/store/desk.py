@@ -14,9 +14,6 @@ from pipeline.collection.sealing import require_sound, sound_rows, write_seals
 from pipeline.store.tables import ACCOUNT, DECISION, ERRAND_WORD, PICTURE, SESSION
 
 # Built once: SQLAlchemy takes longer to put a statement together than SQLite to answer it.
-_PICTURES = select(*(PICTURE.c[name] for name in ("id", "object_number", "note", "who", "recorded"))).order_by(
-    PICTURE.c.id
-)
 _NEWEST = select(
     *(
         select(func.coalesce(func.max(table.c.id), 0)).scalar_subquery()
@@ -57,6 +54,9 @@ class Picture:
     note: str
     who: str
     recorded: str
+
+
+_PICTURES = select(*(PICTURE.c[field.name] for field in fields(Picture))).order_by(PICTURE.c.id)
 
 
 def account_named(engine: Engine, name: str) -> DeskAccount | None:
