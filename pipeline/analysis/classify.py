@@ -8,26 +8,25 @@ record are what its house rules state (`pipeline.analysis.house`), else they com
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache, lru_cache
-from typing import NamedTuple
+from functools import cache
 
-from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of, taken_of
 from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths
-from pipeline.analysis.furniture import in_furniture
+from pipeline.analysis.furniture import furniture_of, in_furniture
 from pipeline.analysis.hanging import HangingGuess, hanging_estimates, hanging_of, swings
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.masses import mass_of, solid_mass
 from pipeline.analysis.mounts import MountGuess, mount_estimates, mount_of
-from pipeline.analysis.rules import Readings, RuleTable, readings
+from pipeline.analysis.object_class import class_of
+from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
 from pipeline.analysis.usual import clearance_of, friction_of, own_damping, wall_damping_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
-from pipeline.records import Estimate, Item, Origin, Scene, Support, too_thin
+from pipeline.records import Estimate, Furniture, Item, Origin, Scene, Support, too_thin
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
 
@@ -307,65 +306,13 @@ def house_effect(
     item: Item, house: HouseRules, rules: RuleTable | None = None, decided: tuple[str, str] | None = None
 ) -> HouseEffect:
     """Return what a museum's house rules come to for an object: see `classify`."""
-    object_class = _class_of(item, rules, decided).name
+    object_class = class_of(item, rules, decided).name
     values = assumed() if rules is None else rules.values
     return _said(house, item, values.classes[object_class])
 
 
 def _said(house: HouseRules, item: Item, row: ObjectClass) -> HouseEffect:
     return house.effect(item, row.name, item.support or row.support, mounts=WHEN_HELD in row.models)
-
-
-class _Taken(NamedTuple):
-    """What an object is taken for: its class, why it is that, and the classes that are likely at all."""
-
-    name: str
-    words: str
-    chances: tuple[tuple[str, float], ...] = ()
-
-
-def _class_of(item: Item, rules: RuleTable | None, decided: tuple[str, str] | None) -> _Taken:
-    """Return what an object is taken for."""
-    if decided is not None:
-        return _Taken(*decided)
-    read = readings(item, rules)
-    chances = chances_of(item, read)
-    taken = taken_of(item, read, chances)
-    if taken is None:
-        return _open(read, _told(chances))
-    words = _why(read, taken)
-    if taken is not chances[0]:
-        words = "title alone: nothing but its title speaks, which may name what a picture shows"
-    return _Taken(taken.object_class, words, _told(chances))
-
-
-def _open(read: Readings, chances: tuple[tuple[str, float], ...]) -> _Taken:
-    """Return what a record that names no class is taken for: what is left, with the chance that the others leave."""
-    name = read.decided.rule.object_class
-    others = tuple(pair for pair in chances if pair[0] != name)
-    words = f"{read.decided.words}; its record names no class"
-    if not others:
-        return _Taken(name, words)
-    words += f", {others[0][0]} is the likeliest ({others[0][1]:.2f})"
-    left = (name, round(1.0 - sum(chance for _, chance in others), 2))
-    return _Taken(name, words, tuple(sorted((*others, left), key=lambda pair: -pair[1])))
-
-
-@lru_cache(maxsize=65536)
-def _told(chances: tuple[Chance, ...]) -> tuple[tuple[str, float], ...]:
-    """Return the classes that are likely at all, with their probability to the hundredth."""
-    return tuple((one.object_class, round(one.probability, 2)) for one in chances if one.probability >= POSSIBLE)
-
-
-def _why(read: Readings, taken: Chance) -> str:
-    """Return why an object is of a class: the rule that says so, of those of each part of its record."""
-    if read.decided.rule.object_class == taken.object_class:
-        return read.decided.words
-    found = (one for field in FIELDS if (one := getattr(read, field)) is not None)
-    for one in found:
-        if one.rule.object_class == taken.object_class:
-            return str(one.words)
-    return "evidence: all that its record says, weighed together"
 
 
 def _undecided(scene: Scene, values: AssumedValues) -> Scene:
@@ -393,7 +340,7 @@ def classify(
     house   : what the museum states once for many objects; None for nothing
     raises  : KeyError for a decided class that is no row of classes.csv
     """
-    taken = _class_of(item, rules, decided)
+    taken = class_of(item, rules, decided)
     values = assumed() if rules is None else rules.values
     row = values.classes[taken.name]
     said = NO_EFFECT if house is None else _said(house, item, row)
@@ -401,6 +348,20 @@ def classify(
     hanging = said.hanging(item) or scene.hanging
     scene = replace(scene, hanging=hanging, statements=said.statements, chances=taken.chances)
     return in_furniture(_undecided(scene, values), said, values)
+
+
+def furniture_kind(
+    item: Item,
+    rules: RuleTable | None = None,
+    decided: tuple[str, str] | None = None,
+    house: HouseRules | None = None,
+) -> Furniture:
+    """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
+    values = assumed() if rules is None else rules.values
+    row = values.classes[class_of(item, rules, decided).name]
+    said = NO_EFFECT if house is None else _said(house, item, row)
+    support = said.laid_over(item).support or row.support
+    return furniture_of(item, row.name, support, said).furniture
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:

@@ -11,11 +11,12 @@ from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any
 
 from pipeline.analysis.chart_runs import deciding, response_chart
+from pipeline.analysis.classify import furniture_kind
 from pipeline.analysis.faults import Fault, each_apart, fault, unassessed
 from pipeline.analysis.neighbours import neighbours
 from pipeline.collection.object_index import read_packed
 from pipeline.execute.memory import give_back
-from pipeline.night.assessment import Assessed, assess_objects, left_aside
+from pipeline.night.assessment import Assessed, assess_objects, by_object, decided_class, left_aside
 from pipeline.records import Decision, Item, Motion
 from pipeline.store.pages import NEIGHBOURS, Members, found_of
 from pipeline.store.results import Stored, anonymous, encode, encode_spacings
@@ -57,6 +58,38 @@ def build_chart(context: "RunContext", task: ChartTask) -> None:
         charts=context.charts,
         **given,
     )
+
+
+@dataclass(frozen=True)
+class FurnitureTask:
+    """Units of which it is to be known what they stand in, hang from or stand on.
+
+    Attributes
+    ----------
+    records
+        Of the first object of each, packed.
+    decisions
+        Those in force about them.
+    """
+
+    records: bytes
+    decisions: tuple[Decision, ...] = ()
+
+
+def furniture_of_units(context: "RunContext", task: FurnitureTask) -> tuple[str, ...]:
+    """Return the kind of furniture of each unit; "" for one that Kouros fails on, which is told when it is assessed."""
+    about = by_object(task.decisions)
+    out = []
+    for item in read_packed(task.records):
+        try:
+            decided = decided_class(about.get(item.object_number, ()))
+            kind = furniture_kind(item, context.rules, decided, context.house).value
+        except (MemoryError, OSError):
+            raise
+        except Exception:  # noqa: BLE001 - whatever it is, it is of this object, which is met again
+            kind = ""
+        out.append(kind)
+    return tuple(out)
 
 
 @dataclass(frozen=True)
