@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from math import isnan
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, TextIO
+from unicodedata import category
 
 from pipeline.operations.event_log import note
 from pipeline.quantities import counted
@@ -204,8 +205,11 @@ def _decision_lines(summary: "Summary") -> list[str]:
 
 
 def printable(text: str) -> str:
-    """Return text in one line without the characters by which it could steer a terminal."""
-    return "".join(c if c.isprintable() else "\ufffd" for c in text)
+    """Return text in one line without the characters by which it could steer a terminal.
+
+    Spaces that do not break, as between a number and its unit, are spaces: Python calls them not printable.
+    """
+    return "".join(c if c.isprintable() else " " if category(c) == "Zs" else "\ufffd" for c in text)
 
 
 class Guarded:

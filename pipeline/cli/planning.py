@@ -102,6 +102,7 @@ def _limits(hours: tuple[str, ...], cost: float | None, *, removals: bool) -> "E
 
 def _lines(found: "Planned", *, dry: bool) -> list[str]:
     from pipeline.report.pages.errand_views import plan_view
+    from pipeline.report.units import percent
 
     plan = found.plan
     view = plan_view(plan)
@@ -120,7 +121,7 @@ def _lines(found: "Planned", *, dry: bool) -> list[str]:
     if plan.away:
         what = counted(len(plan.away), "errand")
         share = sum(plan.errands[at].avoided for at in plan.away) / plan.loss if plan.loss > 0.0 else 0.0
-        lines += ["", f"To decide with a curator: {what} that take objects from view, {share:.1%} (--removals)"]
+        lines += ["", f"To decide with a curator: {what} that take objects from view, {percent(share, 1)} (--removals)"]
     if found.path is not None:
         lines.append(f"{'would write' if dry else 'wrote'} {found.path}")
     return lines
@@ -132,6 +133,7 @@ def _together(plan: "ErrandPlan") -> list[tuple[str, str]]:
     What is done in one gallery, or in one case of it, by one measure is one line.
     """
     from pipeline.report.pages.errand_views import number, priced, title_of
+    from pipeline.report.units import percent
 
     ranked = plan.best_first
     lines = []
@@ -141,10 +143,10 @@ def _together(plan: "ErrandPlan") -> list[tuple[str, str]]:
         numbers = [object_.object_number for one in some for object_ in one.objects]
         more = f" and {len(numbers) - _NAMED:,} more" if len(numbers) > _NAMED else ""
         hours, cost = sum(one.hours.value for one in some), sum(one.cost.value for one in some)
-        share = sum(one.avoided for one in some) / plan.loss if plan.loss > 0.0 else 0.0
+        avoids = percent(sum(one.avoided for one in some) / plan.loss if plan.loss > 0.0 else 0.0, 2)
         first = "" if one.needs is None else f", after: {plan.errands[one.needs].title}"
         where = f"case {one.case}: " if one.case else ""
-        effort = f"{number(hours)} h {one.trade}, cost {priced(number(cost), plan.terms.currency)}; avoids {share:.2%}"
+        effort = f"{number(hours)} h {one.trade}, cost {priced(number(cost), plan.terms.currency)}; avoids {avoids}"
         lines.append((one.gallery, f"{where}{title_of(one)}{first}: {', '.join(numbers[:_NAMED])}{more}; {effort}"))
     return lines
 

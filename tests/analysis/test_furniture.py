@@ -11,7 +11,7 @@ import pytest
 from scipy.signal import lsim
 
 from pipeline.analysis.assess import assess
-from pipeline.analysis.classify import classify
+from pipeline.analysis.classify import classify, furniture_kind
 from pipeline.analysis.context import Context
 from pipeline.analysis.furnished import _off_level, _variants, best_furnished, furnished
 from pipeline.analysis.furniture import FurnitureFilter, filter_of, furniture_of
@@ -21,11 +21,14 @@ from pipeline.analysis.house.rule import HouseRule
 from pipeline.analysis.response import respond
 from pipeline.analysis.transmission import cascade, transmit
 from pipeline.analysis.verdicts import LevelMotions
+from pipeline.collection.mapping import load_mapping
+from pipeline.collection.reading import read_items
 from pipeline.execute import Threads
 from pipeline.mitigate.installed import InstalledMeasure, assess_above, placed
 from pipeline.mitigate.search import advise
 from pipeline.models.common import largest_push
 from pipeline.motions import read_motion
+from pipeline.night.importing import bundled_collection
 from pipeline.quantities import Array, G
 from pipeline.records import Finding, Furniture, Item, Motion, Numerics, Origin, Scene, Support, Verdict
 from pipeline.resources import resource
@@ -90,6 +93,17 @@ def test_the_record_comes_before_the_rule_and_the_rule_before_the_case_and_the_c
     assert "a shelf, by the house rule for" in notes[0]
     assert "a pedestal or plinth, for its record names the case or plinth 'Plinth 3'" in notes[1]
     assert "a showcase, assumed for: vessel, usual_furniture.csv; not recorded; of 6 Hz (3 to 12)" in notes[2]
+
+
+def test_the_kind_alone_is_that_of_the_whole_scene() -> None:
+    """Of a real collection, as its records stand, with rules of the house, and with a class that a person gave."""
+    items = read_items(bundled_collection(), load_mapping("carnegie")).items
+    house = rule(medium="bronze", furniture="shelf")
+    for told in ({}, {"house": house}, {"decided": ("clock", "Ann")}):
+        kinds = [(furniture_kind(item, **told), classify(item, **told).furniture) for item in items]  # type: ignore[arg-type]
+        assert all(alone is whole for alone, whole in kinds)
+        # Not the same whatever it is.
+        assert len({alone for alone, _ in kinds}) > 1
 
 
 @pytest.mark.parametrize("support", [Support.FREESTANDING, Support.FASTENED, Support.HUNG, Support.SUSPENDED])

@@ -10,7 +10,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.cache import HISTORIES
-from pipeline.collection.object_index import object_index
+from pipeline.collection.object_index import object_index, read_packed
 from pipeline.collection.record import assessment_digest_of
 from pipeline.execute.pool import SerialPool
 from pipeline.mitigate.installed import Placed
@@ -22,8 +22,9 @@ from pipeline.night.context import RunContext
 from pipeline.night.floors import Floor
 from pipeline.night.importing import import_collection
 from pipeline.night.prepare import popular
+from pipeline.night.unit_tasks import Assessments, UnitTask
 from pipeline.operations.workspace import open_workspace
-from pipeline.records import Assessment, Item, Problem, Provenance, Support
+from pipeline.records import Assessment, Furniture, Item, Problem, Provenance, Support
 from pipeline.records.scene import Origin
 from pipeline.settings import load_settings
 from tests.museum import found, museum_of, night, vases, write_collection
@@ -171,7 +172,8 @@ def pair(monkeypatch: pytest.MonkeyPatch) -> None:
     for module in (scheduler, staff):
         monkeypatch.setattr(module, "FEW", 0)
     monkeypatch.setattr(staff, "SHOWN", 0)
-    monkeypatch.setattr(scheduler, "BATCH", 2)
+    for limit in ("BATCH", "WHOLE"):
+        monkeypatch.setattr(scheduler, limit, 2)
     monkeypatch.setattr(staff, "pool", lambda **_: nullcontext(Pair()))
 
 
@@ -187,6 +189,37 @@ def test_where_several_work_what_is_alike_is_still_worked_on_once(tmp_path: Path
     assert assessed == ["9.9"]
     # What is run for one object does not take the place of what was run for all.
     assert {file.name for file in (settings.kept / HISTORIES).iterdir()} == batches
+
+
+@pytest.mark.usefixtures("pair")
+def test_what_is_worked_on_together_stands_in_the_same_furniture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the record or as is usual for its class, in parts of two units or so, none of them twice and none left out."""
+    told = [("pedestal", "Vase"), ("shelf", "Vase"), ("", "Cabinet"), ("", "Vase")]
+    rows = []
+    for at, row in enumerate(vases(galleries=2, each=8)):
+        furniture, name = told[at % len(told)]
+        height = (0.2 if name == "Vase" else 1.2) + 0.01 * at
+        rows.append(
+            row | {"furniture": furniture, "title": name, "object_name": name, "height_m": str(round(height, 3))}
+        )
+    given: list[list[Item]] = []
+
+    def assess_units(context: RunContext, task: UnitTask) -> Assessments:
+        given.append(read_packed(task.records))
+        return true(context, task)
+
+    true = scheduler.assess_units
+    monkeypatch.setattr(scheduler, "assess_units", assess_units)
+    settings = museum_of(tmp_path / "museum", rows)
+    assert night(settings).fresh == len(rows)
+    kinds = [{classify(item).furniture for item in some} for some in given]
+    assert all(len(kind) == 1 for kind in kinds)
+    assert set.union(*kinds) == {Furniture.PEDESTAL, Furniture.SHELF, Furniture.FLOOR, Furniture.SHOWCASE}
+    assert len(given) > 4
+    numbers = [item.object_number for some in given for item in some]
+    assert sorted(numbers) == sorted(row["object_number"] for row in rows)
 
 
 def test_a_kind_is_what_the_record_says_but_for_what_is_the_objects_own() -> None:

@@ -35,7 +35,8 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
 @pytest.fixture
 def shared(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four batches of about eight objects, and others do the work whatever its size."""
-    monkeypatch.setattr(scheduler, "BATCH", 8)
+    for limit in ("BATCH", "WHOLE"):
+        monkeypatch.setattr(scheduler, limit, 8)
     for module in (scheduler, staff):
         monkeypatch.setattr(module, "FEW", 0)
     monkeypatch.setattr(staff, "SHOWN", 0)

@@ -109,6 +109,9 @@ def test_the_command_prints_and_writes(settings: Settings, report: Path, tmp_pat
         done = kouros("plan", "--hours", "3", "--out", str(file), folder=folder)
         assert done.returncode == 0, done.stderr
         assert done.stdout.splitlines()[2].startswith("With 3 hours you avoid ")
+        # A space that does not break is no sign that steers a terminal.
+        assert "\ufffd" not in done.stdout
+        assert " % of what an earthquake" in done.stdout
         assert done.stdout.splitlines()[-1] == f"wrote {file}"
     assert openpyxl.load_workbook(sheet).sheetnames[0] == "Plan"
     assert "With 3 hours" in page.read_text(encoding="utf-8")
