@@ -13,7 +13,7 @@ from pipeline.settings import Execution
 FEW = 200
 """Objects to be assessed for which other processes do not pay: each takes seconds to start, and does again some of what
 all objects need.  Up to here threads share the kernels of one process, but only one does the rest: two processes found
-400 objects in 0.82 of its time, and the demonstration in 0.75."""
+400 objects in 0.62 of its time, and the demonstration in 0.55."""
 
 SHOWN = 4_000
 """Objects to be shown for which other processes do not pay, unless they are there; and to be assessed, from which on
