@@ -248,10 +248,13 @@ def as_geojson(manifest: Manifest) -> str:
     Returns
     -------
     str
-        A FeatureCollection of points, degrees east and north; what has no place is left out.
+        A FeatureCollection of points, degrees east and north; what has no place is left out, and so is a site at zero
+        north and zero east, where `kouros init` puts one until somebody says where it is.
     """
     site: SiteTable = manifest.site
-    features = [_point(site.longitude, site.latitude, None, {"kind": "site", "name": site.name})]
+    features = []
+    if site.latitude or site.longitude:
+        features.append(_point(site.longitude, site.latitude, None, {"kind": "site", "name": site.name}))
     records = [record for _, record in manifest.records()]
     for one in dict.fromkeys(r.station for r in records if r.station is not None):
         if one.latitude is not None and one.longitude is not None:

@@ -77,8 +77,8 @@ class Corner:
     frequency : float
         In Hz.
     reason : str
-        Which of record length, noise, source and displacement decided, with what each of them asked for, and the PGV at
-        this corner, at half and at double of it.
+        Which of record length, noise, source and displacement decided, with what each of them asked for, and the PGV of
+        the larger horizontal channel, unturned and unscaled, at this corner, at half and at double of it.
     """
 
     frequency: float
@@ -187,15 +187,15 @@ def choose_corner(
     stronger, lower = max(fastest, default=(pgv, corner))
     if stronger > DOUBT_PGV * pgv:
         reasons.append(
-            f"the record does not decide between {lower:.3g} Hz with a larger horizontal PGV of "
-            f"{100 * stronger:.3g} cm/s and {corner:.3g} Hz with {100 * pgv:.3g} cm/s: the stronger motion is used; "
+            f"the record does not decide between {lower:.3g} Hz, with a PGV of {100 * stronger:.3g} cm/s in its larger "
+            f"horizontal channel, and {corner:.3g} Hz with {100 * pgv:.3g} cm/s: the stronger motion is used; "
             f"name highpass_hz to decide"
         )
         corner, pgv = lower, stronger
     half, double = (_fastest(flat, motion.dt, share * corner) for share in (0.5, 2.0))
     reasons.append(
-        f"the drift is {drift(corner):.1%}, the larger horizontal PGV {100 * pgv:.3g} cm/s, {100 * half:.3g} at half "
-        f"the corner and {100 * double:.3g} at double"
+        f"the drift is {drift(corner):.1%}, the PGV of the larger horizontal channel {100 * pgv:.3g} cm/s, "
+        f"{100 * half:.3g} at half the corner and {100 * double:.3g} at double"
     )
     return Corner(corner, f"{decided}: " + "; ".join(reasons))
 

@@ -29,7 +29,11 @@ EAST = 90.0
 """Azimuth of the x axis in degrees clockwise from north, unless the manifest turns it to the building."""
 
 ORTHOGONAL_WITHIN = 2.0
-"""Degrees that two horizontal channels may be off a right angle (the usual care of an installation)."""
+"""Degrees that two horizontal channels may be off a right angle without a word (the usual care of an installation)."""
+
+SKEW_WITHIN = 30.0
+"""Degrees that they may be off it at all.  Both directions of the ground follow from any two, but what is uncertain in
+the channels grows with the skew, by 1.4 at most at 30 degrees; beyond, an azimuth is rather wrong (judgement)."""
 
 TRANSIENT = 0.001
 """Share of the PGV by which an agency's first velocity may be off the one that its record starts with (rounding)."""
@@ -376,11 +380,14 @@ def rotate(data: Array, first: float, second: float, x_azimuth: float = EAST) ->
     Raises
     ------
     InputError
-        Unless the two are at right angles within 2 degrees.
+        For channels that are more than SKEW_WITHIN off a right angle.
     """
-    between = (second - first) % 180.0
-    if abs(between - 90.0) > ORTHOGONAL_WITHIN:
-        raise InputError(f"components: the horizontal azimuths {first:g} and {second:g} are not at right angles")
+    skew = abs((second - first) % 180.0 - 90.0)
+    if skew > SKEW_WITHIN:
+        raise InputError(
+            f"components: the horizontal azimuths {first:g} and {second:g} are {skew:.3g} degrees off a right angle, "
+            f"and {SKEW_WITHIN:g} at most can be undone"
+        )
     axes = (
         "x east, y north"
         if x_azimuth == EAST
@@ -392,7 +399,8 @@ def rotate(data: Array, first: float, second: float, x_azimuth: float = EAST) ->
     seen = np.array([[_sine(azimuth - x_azimuth + 90.0), _sine(x_azimuth - azimuth)] for azimuth in (first, second)])
     out = np.array(data)
     out[:2] = np.linalg.inv(seen) @ data[:2]
-    return out, f"rotated from azimuths {first:g} and {second:g} degrees to {axes}"
+    off = f", {skew:.3g} degrees off a right angle," if skew > ORTHOGONAL_WITHIN else ""
+    return out, f"rotated from azimuths {first:g} and {second:g} degrees{off} to {axes}"
 
 
 def _sine(degrees: float) -> float:

@@ -273,7 +273,9 @@ def _clash(wish: AddWish, level: str, already: Sequence[tuple[str, str]], known:
 def _place(wish: AddWish, said: Sequence[StationTable], folder: Path) -> StationTable:
     one = said[0] if said else StationTable()
     place = {"latitude": wish.latitude, "longitude": wish.longitude}
-    return one.model_copy(update={"name": one.name or folder.resolve().name} | {k: v for k, v in place.items() if v})
+    return one.model_copy(
+        update={"name": one.name or folder.resolve().name} | {k: v for k, v in place.items() if v is not None}
+    )
 
 
 def _told(place: StationTable, *, new: bool) -> list[str]:

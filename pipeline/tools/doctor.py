@@ -15,6 +15,7 @@ from pipeline.errors import KourosError
 from pipeline.night.reading_summary import in_line, told, unsaid
 from pipeline.night.source_state import mapping_of
 from pipeline.operations.dry_run import DryRunWarning, read_only
+from pipeline.operations.report_status import last_good
 from pipeline.operations.secrets import hider
 from pipeline.operations.workspace import Workspace, locked, open_workspace
 from pipeline.quantities import counted
@@ -112,13 +113,21 @@ def _collection(settings: Settings) -> tuple[str, str]:
 
 
 def _motions(settings: Settings) -> tuple[str, str]:
-    from pipeline.motions.manifest import unlisted
+    from pipeline.motions.errors import MotionError
+    from pipeline.motions.manifest import load_manifest, unlisted
     from pipeline.motions.site import levels_at, read_site
     from pipeline.night.floors import known
     from pipeline.operations.workspace import site_folder
     from pipeline.quantities import G
 
-    site = read_site(site_folder(settings.home, settings.site.folder))
+    folder = site_folder(settings.home, settings.site.folder)
+    try:
+        site = read_site(folder)
+    except MotionError as problem:
+        # That a new museum has no records yet is the next thing to do; one that had a night has lost them.
+        if last_good(settings) is not None or load_manifest(folder, begun=True).level:
+            raise
+        return "warning", f"{problem}; no night can run before"
     # What topples an object is velocity more than acceleration: both are said.
     peaks = [
         f"{m.motion.name} {m.measures['pga'] / G:.2f} g, {100.0 * m.measures['pgv']:.0f} cm/s"

@@ -330,7 +330,35 @@ def test_the_network_s_files_name_station_earthquake_and_distance(tmp_path: Path
     assert {code: (s.latitude, s.longitude) for code, s in back.stations.items()} == {
         f"XX.{code}": at for code, at in places.items()
     }
-    assert back.site[0].name == "mine"
+    # Nobody has said where the site is: zero north, zero east would come back as if somebody had.
+    assert back.site == []
+    manifest = tmp_path / "mine" / "manifest.toml"
+    manifest.write_text(
+        manifest.read_text(encoding="utf-8").replace("latitude = 0.0", "latitude = -0.2", 1), encoding="utf-8"
+    )
+    code, out = say(tmp_path, "export", "mine", "--geojson", "said.geojson")
+    assert code == 0, out
+    back = Catalogues()
+    assert back.take(tmp_path / "said.geojson")
+    assert (back.site[0].name, back.site[0].latitude, back.site[0].longitude) == ("mine", -0.2, 0.0)
+
+
+def test_a_place_on_the_equator_or_the_meridian_is_a_place(tmp_path: Path) -> None:
+    code, out = say(
+        tmp_path,
+        "add",
+        str(DEMO),
+        "--site",
+        "mine",
+        "--no-compare",
+        "--latitude",
+        "51.5",
+        "--longitude",
+        "0",
+        "--dry-run",
+    )
+    assert code == 0, out
+    assert "nobody has said where the site is" not in out
 
 
 def at2(file: Path, title: str, data: np.ndarray) -> None:

@@ -68,8 +68,9 @@ def test_the_manifest_of_a_new_site_is_valid_and_says_what_comes_next(begun: Pat
             use(begun)
     shutil.copy(DEMO / "CI.CLC..HNE.mseed", begun)
     (motions,) = (d for d in diagnose(begun.parents[1] / "kouros.toml") if d.what == "motions")
-    assert motions.state == "wrong"
+    assert motions.state == "warning"
     assert "beside it lies CI.CLC..HNE.mseed" in motions.message
+    assert "`kouros motions add`; no night can run before" in motions.message
 
 
 def test_what_entries_prints_is_a_manifest_once_its_questions_are_answered(begun: Path) -> None:

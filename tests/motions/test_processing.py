@@ -103,7 +103,7 @@ def test_a_small_skew_is_undone():
 
 
 def test_channels_that_are_not_orthogonal_are_refused():
-    with pytest.raises(ValueError, match="right angles"):
+    with pytest.raises(ValueError, match="off a right angle"):
         rotate(np.zeros((3, 5)), 0.0, 45.0)
 
 

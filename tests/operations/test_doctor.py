@@ -17,6 +17,7 @@ from pipeline.report import publish
 from pipeline.settings import Settings, load_settings
 from pipeline.tools.doctor import Diagnosis, diagnose
 from pipeline.tools.doctor_checks import OVERDUE_H
+from pipeline.tools.initialise import initialise
 from tests.museum import edit
 from tests.night.changing import FRICTION
 
@@ -44,6 +45,17 @@ def test_a_new_museum_is_well_but_for_its_first_night(museum: Museum) -> None:
     assert "no good report yet" in looked["last report"].message
     assert looked["retention"].message.startswith("3 runs kept at most")
     assert looked["lock"].state == looked["disk"].state == looked["permissions"].state == "ok"
+
+
+def test_a_site_without_records_is_what_comes_next_until_a_night_has_run(tmp_path: Path) -> None:
+    initialise(tmp_path)
+    looked = found(tmp_path)
+    assert {what for what, d in looked.items() if d.state == "wrong"} == set()
+    assert "add a record's files with `kouros motions add`; no night can run before" in looked["motions"].message
+    report(load_settings(tmp_path / "kouros.toml"), 1.0)
+    assert found(tmp_path)["motions"].state == "wrong"
+    (tmp_path / "site_motions" / "site" / "manifest.toml").write_text("[site]\nname = 3\n", encoding="utf-8")
+    assert found(tmp_path)["motions"].state == "wrong"
 
 
 def test_a_night_that_is_overdue_stale_or_interrupted(museum: Museum) -> None:

@@ -10,9 +10,13 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import NUMBER, Lines, Source
 
+_PLACE = r"(\d{1,3}(?:\.\d{0,6})?)\s?([NS])[\s,]+(\d{1,3}(?:\.\d{0,6})?)\s?([EW])\b"
+_EPICENTRE = re.compile(rf"^EPICENTER\s*:?\s*{_PLACE}(?:\s+DEPTH\s*:?\s*(\d{{1,3}}(?:\.\d{{0,3}})?)\s*KM\b)?")
+_MAGNITUDE = re.compile(r"^MAGNITUDE\s*:?\s*(\d{1,2}(?:\.\d{0,2})?)\s*(?:\(\s*M([A-Za-z])\w?\s*\))?")
+_STANDS = re.compile(rf"^STATION\s*:.*?\b{_PLACE}")
 _STATION = re.compile(r"^STATION\s*:\s*(?:\S.*?\s)??(\w{2,8})\s+\d{1,2}(?:\.\d{0,6})?\s?[NS]\b")
 _COMPONENT = re.compile(r"^COMP\.?\s*:?\s*(\S.{0,20}?)\s*$")
 _KIND = re.compile(r"^(UNCORRECTED|CORRECTED)\s+(ACCELERATION|VELOCITY|DISPLACEMENT)\s+UNIT\s*:\s*(\S{1,20})")
@@ -68,9 +72,24 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         start_is="unknown" if when is None else "earthquake",
         headonly=headonly,
         peak={"acceleration": None if peak is None else factor * float(peak[1][1])},
-        more={"notes": assumed} if assumed else {},
+        more={**_about(lines, top, when), **({"notes": assumed} if assumed else {})},
     )
     return [trace]
+
+
+def _about(lines: Lines, top: int, when: Any) -> dict[str, Any]:
+    """What the lines above the samples say of earthquake and station, by the names of `header_facts.about`."""
+    said: dict[str, Any] = {"event_time": when}
+    for text in (lines.text(index) for index in range(top)):
+        for prefix, pattern in (("event_", _EPICENTRE), ("", _STANDS)):
+            if found := pattern.match(text):
+                said[f"{prefix}latitude"] = header_facts.turned(float(found[1]), found[2])
+                said[f"{prefix}longitude"] = header_facts.turned(float(found[3]), found[4])
+                if prefix and found[5]:
+                    said["event_depth_km"] = float(found[5])
+        if found := _MAGNITUDE.match(text):
+            said |= header_facts.magnitude({(found[2] or "").upper(): float(found[1])})
+    return header_facts.about(**said)
 
 
 def _said(lines: Lines, pattern: re.Pattern[str], expected: str) -> tuple[int, re.Match[str]]:

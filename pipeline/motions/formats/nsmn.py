@@ -1,5 +1,7 @@
 """NSMN text (Türkiye): three components in gal side by side, behind seventeen lines of 'KEY : value'.
 
+The unit stands beside the peaks alone, until about 2011 as cm/s^2.
+
 source : headers of the files of the Turkish National Strong Motion Network, earlier than TADAS
 """
 
@@ -12,13 +14,14 @@ from pipeline.motions.formats import blocks, header_facts, record_text, trace_he
 from pipeline.motions.formats.record_text import Keys, Lines, Source
 
 _TITLE = re.compile(r"^STRONG GROUND MOTION RECORDS OF TURK", re.IGNORECASE)
-_KEY = re.compile(r"^([A-Z][A-Z ]{2,30}?)\s*(\([a-z]{1,5}\))?\s*:\s*(.*)$")
+_KEY = re.compile(r"^([A-Z][A-Z ]{2,30}?)\s*(\([A-Za-z][\w/^*]{0,9}\))?\s*:\s*(.*)$")
 _TIMES = (
     re.compile(r"^(?P<d>\d\d)/(?P<m>\d\d)/(?P<y>\d{4}) (?P<H>\d\d):(?P<M>\d\d):(?P<S>\d\d(?:\.\d{0,9})?) \(GMT\)$"),
     re.compile(r"^(?P<y>\d{4})/(?P<m>\d\d)/(?P<d>\d\d) (?P<H>\d\d):(?P<M>\d\d):(?P<S>\d\d(?:\.\d{0,9})?) \(GMT\)$"),
 )
 _PEAK = re.compile(r"\(([NSEWUD]-[NSEWUD])\)\s*(-?\d{1,6}\.(\d{1,9}))")
 _COLUMNS = re.compile(r"^\s*([NSEWUD]-[NSEWUD])\s+([NSEWUD]-[NSEWUD])\s+([NSEWUD]-[NSEWUD])\s*$")
+_GAL = r"(?:[Gg]al|cm/s(?:\^2|\*\*2|2|/s))"
 _MOST_KEYS = 40
 _POINT = re.compile(r"^\s*(\d{1,2}(?:\.\d{0,9})?)([NS])\s?-\s?(\d{1,3}(?:\.\d{0,9})?)([EW])")
 _SIZE = re.compile(r"^\s*(\d\.\d{1,2})\s*M([WSLBD])", re.IGNORECASE)
@@ -37,16 +40,17 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
 
     def said(key: str, pattern: str, expected: str) -> tuple[int, re.Match[str]]:
         at, text = keys.said(key)
-        found = re.match(pattern, f"{text} {units[key]}".strip())
+        whole = f"{text} {units[key]}".strip()
+        found = re.match(pattern, whole)
         if found is None:
-            raise lines.error(at, f"expected {expected}, found {record_text.shown(text)}")
+            raise lines.error(at, f"expected {expected}, found {record_text.shown(whole)}")
         return at, found
 
     at, found = said("NUMBER OF DATA", r"^(\d{1,8})$", "a number of samples")
     count = blocks.samples(lines, at, int(found[1]))
-    at, found = said("SAMPLING INTERVAL", r"^(\d?\.\d{1,9}) \(sec\)$", "a step in seconds")
+    at, found = said("SAMPLING INTERVAL", r"^(\d?\.\d{1,9}) \((?:s|sn|sec)\)$", "a step in seconds")
     dt = blocks.step(lines, at, float(found[1]))
-    at, found = said("RAW PGA VALUES", r"^(.{1,120}) \(gal\)$", "peaks in gal")
+    at, found = said("RAW PGA VALUES", rf"^(.{{1,120}}) \({_GAL}\)$", "peaks in gal or cm/s^2")
     peaks = {name: (float(text), 10.0 ** -len(digits)) for name, text, digits in _PEAK.findall(found[1])}
     at_peaks = at
     table = blocks.rows(lines, keys.end, 3, "acceleration")

@@ -1,8 +1,9 @@
 """PEER AT2: one component of acceleration in g, as the NGA databases and the older PEER database give it.
 
 Four lines of text, the last with the number of samples and the step ("NPTS=  7818, DT= .0050 SEC", with or without its
-comma, or "7818 .0050 NPTS, DT"), then numbers.  The orientation is the last item of the second line.  The header does
-not say whether a record is processed: the manifest must.
+comma, or "7818 .0050 NPTS, DT"), then numbers.  The orientation is the last item of the second line.  A header that
+names the corners of its filter ("FILTER POINTS: HP=0.06 Hz LP=40.0 Hz") is of a processed record; the others do not say
+it: the manifest must.
 
 source : header of the files of the PEER NGA-West2 database
 """
@@ -19,6 +20,7 @@ _UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF (G\b|CM/S|.*
 _NEW = re.compile(r"NPTS\s*=\s*(\d{1,9})\s*[,\s]\s*DT\s*=\s*(\d{0,4}\.\d{1,9}(?:E-?\d)?)", re.IGNORECASE)
 _SEED = re.compile(r"([BEHLS][HNLG][A-Z0-9])(?:\d\d|--)?")
 _REMARK = re.compile(r"\([^()]*\)\s*$")
+_FILTERED = re.compile(r"\bFILTER POINTS?\s*:\s*HP\s*=\s*0*\.?0*[1-9]", re.IGNORECASE)
 _OLD = re.compile(r"^\s*(\d{1,9})\s+(\d{0,4}\.\d{1,9})\s+NPTS\s*,\s*DT", re.IGNORECASE)
 
 
@@ -51,7 +53,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         units="g",
         si_factor=trace_headers.FACTORS["g"],
         direction=direction,
-        processed=None,
+        processed=True if _FILTERED.search(lines.text(2)) else None,
         channel=trace_headers.channel_code(1.0 / dt, direction, 1),
         headonly=headonly,
         more={"title": title} | ({"notes": assumed} if assumed else {}),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from io import BytesIO
+
 import obspy
 import pytest
 
@@ -36,6 +38,19 @@ def test_of_geonet_the_hemispheres_stand_in_the_text(agency_file):
     assert (found.latitude, found.longitude) == (-39.944, 176.584)
     assert (found.event_latitude, found.event_longitude, found.magnitude) == (-40.06, 176.55, 4.17)
     assert (found.event_name, found.distance_km) == ("6 km south of Waipukurau", 13.0)
+
+
+def test_of_csmnc_in_its_lines():
+    """EPICENTER  30.300N 103.000E DEPTH 13 KM; MAGNITUDE  7.0(Ms); STATION: 051XXX 30.400N 102.800E; 8:2:46 BTM."""
+    found = obspy.read(BytesIO(national.csmnc()), format="CSMNC")[0].stats.kouros
+    assert (found.event_latitude, found.event_longitude, found.event_depth_km) == (30.3, 103.0, 13.0)
+    assert (found.magnitude, found.magnitude_type) == (7.0, "Ms")
+    assert (found.latitude, found.longitude) == (30.4, 102.8)
+    assert found.event_time == obspy.UTCDateTime("2013-04-20T00:02:46")
+    west = national.csmnc().replace(b"30.300N 103.000E DEPTH 13 KM", b"30.300S 103.000W           ")
+    found = obspy.read(BytesIO(west), format="CSMNC")[0].stats.kouros
+    assert (found.event_latitude, found.event_longitude) == (-30.3, -103.0)
+    assert "event_depth_km" not in found
 
 
 def test_of_the_usc_in_degrees_minutes_and_seconds():

@@ -68,6 +68,22 @@ def test_side_by_side(written, name):
         assert np.abs(trace.data - amplitude * tone()).max() <= 1.001 * digit
 
 
+@pytest.mark.parametrize("unit", [b"(cm/s^2)", b"(cm/s2)   ", b"(Gal)   "])
+def test_nsmn_names_the_unit_of_its_peaks_otherwise(unit):
+    """As of 1302 Bitlis, 23 October 2011: 'RAW PGA VALUES (cm/s^2) :' and an earthquake that nobody had located yet."""
+    content = national.nsmn().replace(b"(gal)   ", unit).replace(b"2017/07/20 22:31:09 (GMT)", b"20/07/2017")
+    north, east, _ = traces(content, "nsmn")
+    assert np.abs(north.data - 100.0 * tone()).max() <= 1e-6
+    assert (east.stats.kouros.units, east.stats.kouros.si_factor) == ("gal", 0.01)
+    assert "event_time" not in north.stats.kouros
+
+
+@pytest.mark.parametrize("unit", [b"(g)     ", b"(m/s^2) ", b"(mg)    ", b"        "])
+def test_nsmn_of_another_unit_is_refused(unit):
+    with pytest.raises(FormatError, match=r"line 9: expected peaks in gal or cm/s\^2, found '\(N-S\) 100"):
+        traces(national.nsmn().replace(b"(gal)   ", unit), "nsmn")
+
+
 @pytest.mark.parametrize("name", STARTS)
 def test_times_are_utc(name):
     when, of = STARTS[name]

@@ -155,6 +155,21 @@ def test_at2_orientations(read, title, said):
 
 
 @pytest.mark.parametrize(
+    ("words", "processed"),
+    [
+        (b" FILTER POINTS: HP=0.06 Hz LP=40.0 Hz", True),  # HWA002, Chi-Chi 1999, of the older PEER database
+        (b" Filter points: HP=.2 Hz LP=null", True),
+        (b" FILTER POINTS: HP=0.00 Hz LP=40.0 Hz", None),
+        (b" FILTER POINTS: HP=null LP=40.0 Hz", None),
+        (b"", None),
+    ],
+)
+def test_an_at2_that_names_its_filter_is_processed(read, words, processed):
+    content = hand.at2().replace(b"UNITS OF G", b"UNITS OF G." + words)
+    assert read(content)[0].stats.kouros.processed is processed
+
+
+@pytest.mark.parametrize(
     ("text", "said"),
     [
         ("360 Deg", 0.0), ("90", 90.0), ("South", 180.0), ("w", 270.0), ("N16E", 16.0), ("S16W", 196.0),
