@@ -31,9 +31,9 @@ EAST = 90.0
 ORTHOGONAL_WITHIN = 2.0
 """Degrees that two horizontal channels may be off a right angle without a word (the usual care of an installation)."""
 
-SKEW_WITHIN = 30.0
-"""Degrees that they may be off it at all.  Both directions of the ground follow from any two, but what is uncertain in
-the channels grows with the skew, by 1.4 at most at 30 degrees; beyond, an azimuth is rather wrong (judgement)."""
+SKEW_WITHIN = 10.0
+"""Degrees that they may be off it at all.  Both directions of the ground follow from any two; but the channels of one
+package are at right angles, so that more than a hasty reading of a compass is an azimuth that is wrong (judgement)."""
 
 TRANSIENT = 0.001
 """Share of the PGV by which an agency's first velocity may be off the one that its record starts with (rounding)."""
