@@ -16,6 +16,7 @@ from pipeline.collection.guessing.columns import Column, candidates, usual_place
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
 from pipeline.collection.guessing.names import bare, is_side, unit_in
+from pipeline.collection.guessing.sides import exchange_sides
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -39,7 +40,7 @@ MOST_REPEATED = 0.1
 MOST_STORES = 200
 """Places that are listed as stores at most."""
 
-_TABLES = ("csv", "tsv", "xlsx", "sql")
+_TABLES = ("csv", "tsv", "xlsx", "sql", "json")
 """Formats whose columns are the museum's own."""
 
 _FORMATS = {"lido": "lido", "adlib": "adlib", "museumplus_ria": "museumplus", "linked_art": "linked_art"}
@@ -83,7 +84,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         most like an inventory is taken, and a database's dimensions and places are joined to it.
     choices : mapping of str to str
         What a person has chosen: a field and its column ("object_number": "Inv."; "-" for none), a field's unit
-        ("height_m.unit": "cm"), "header_row", "header_rows", "encoding", "delimiter", "decimal".
+        ("height_m.unit": "cm"), "header_row", "header_rows", "encoding", "delimiter", "decimal", "records".
 
     Returns
     -------
@@ -136,7 +137,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
 
 
 def _check_choices(choices: Mapping[str, str]) -> None:
-    own = ("header_row", "header_rows", "encoding", "delimiter", "decimal", "dimensions", "unit")
+    own = ("header_row", "header_rows", "encoding", "delimiter", "decimal", "dimensions", "unit", "records")
     for key in choices:
         if key not in own and key.removesuffix(".unit") not in MAPPABLE:
             raise CollectionError(
@@ -173,10 +174,12 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
             found["image"] = picture
         if "image" in found:
             told.doubts.append(pictures_said(columns, found["image"], found.values()))
+    if not {"height_m", "width_m"} & told.choices.keys():
+        exchange_sides(columns, found, told.doubts)
     usual = None if "gallery" in told.choices else usual_place(columns, found)
     if usual is not None:
         told.questions[:] = [question for question in told.questions if question.key != "gallery"]
-    fields, used = Fields(columns, told.choices, told.doubts, told.questions, usual).mapped(found)
+    fields, used = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery")).mapped(found)
     document["columns"] = fields
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")

@@ -95,6 +95,56 @@ class ColumnMeaning:
     internal: bool = False
 
 
+_ELSEWHERE = frozenset(
+    {
+        *("image", "images", "img", "picture", "pictures", "photo", "photos", "photograph", "photographs", "thumbnail"),
+        *(
+            "thumbnails",
+            "media",
+            "visuel",
+            "visuels",
+            "bild",
+            "bilder",
+            "abbildungen",
+            "immagini",
+            "imagenes",
+            "imagem",
+        ),
+        *("afbeeldingen", "billeder", "iiif", "files", "file", "exhibition", "exhibitions", "exhibit", "ausstellungen"),
+        *(
+            "expositions",
+            "mostre",
+            "exposiciones",
+            "exposities",
+            "udstillinger",
+            "related",
+            "parts",
+            "creator",
+            "creators",
+        ),
+        *("artist", "artists", "maker", "makers", "people", "person", "agents", "constituents", "production", "author"),
+        *("documentation", "references", "bibliography", "publications", "literature", "provenance", "inscriptions"),
+        *(
+            "geographies",
+            "geography",
+            "places",
+            "links",
+            "rights",
+            "citations",
+            "children",
+            "parent",
+            "label",
+            "colors",
+        ),
+    }
+)
+"""Words of what an object has or what was made of it: a size, number or title within is not the object's."""
+
+_HOLDING = frozenset(
+    {"name", "value", "text", "label", "term", "content", "preflabel", "displayname", "de", "en", "fr"}
+)
+"""Names within a name that say only that its value follows: "object_names.name"."""
+
 _USUAL = frozenset({"home", "normal", "usual", "default", "permanent", "stamm", "habituel", "abituale", "habitual"})
 """Words of a place where an object mostly is: used where no column tells where it is now."""
 
@@ -213,6 +263,8 @@ def named(name: str) -> ColumnMeaning | None:
     """
     if name in MAPPABLE:
         return ColumnMeaning(name, 0)
+    if any(_ELSEWHERE.intersection(plain(above).split()) for above in path_of(name)[:-1]):
+        return None
     for form in _forms(name):
         found = _names().get(form)
         if found is not None:
@@ -236,6 +288,11 @@ def of_table(table: str, field: str) -> bool:
     return any(found.field == field and same_stem(name.replace(" ", ""), table) for name, found in _names().items())
 
 
+def path_of(name: str) -> list[str]:
+    """Return the names of which the name of a column is a path: "location.onView" as ["location", "onView"]."""
+    return re.split(r"__|\.(?=[^\W\d_]{3}|[^\W\d_]+_)", name.strip("_ ."))
+
+
 def _forms(name: str) -> Iterator[str]:
     upper, between, lower = name.rpartition(BETWEEN)
     if between and _says(upper) == TEXTS:
@@ -254,7 +311,7 @@ def _forms(name: str) -> Iterator[str]:
     if len(halves) > 1:
         yield from map(plain, reversed(halves) if between else halves)
     # A path of names: what its last one says, "_currentLocation__onDisplay", "location.onView".
-    path = re.split(r"__|\.(?=[^\W\d_]{3}|[^\W\d_]+_)", name.strip("_ ."))
+    path = path_of(name)
     if path[-1] != name:
         yield plain(path[-1])
     # "measurement_height", "ca_objects.dimensions.dimensions_height"
@@ -265,6 +322,8 @@ def _forms(name: str) -> Iterator[str]:
     # "ca_storage_locations.hierarchy.preferred_labels.name": of no other table of words is it the first.
     if len(path) > 2:
         yield plain(path[0])
+    if len(path) > 1 and plain(path[-1]).replace(" ", "") in _HOLDING:
+        yield plain(path[-2])
     # What stands in brackets may be a language.
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:
