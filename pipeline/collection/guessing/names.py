@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 from typing import Annotated
 from unicodedata import combining, normalize
@@ -50,6 +51,10 @@ _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _OTHER = re.compile(r"[^\w]+|_")
 _SHORT = 4
 """Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
+_LONG = 5
+"""Letters from which a name that is nearly another one is hardly a name of its own."""
+_ALMOST = 0.9
+"""Likeness of two such names, 1 being the same: one letter in ten."""
 _WEAK = 1000
 """Rank of a name that is only part of what stands in the head."""
 
@@ -274,6 +279,29 @@ def named(name: str) -> ColumnMeaning | None:
         if found is not None:
             return found
     return _within(name)
+
+
+def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
+    """Return what the name of a column would say if a letter or two of it were others, and the name that it has then.
+
+    Parameters
+    ----------
+    name : str
+        Of a column that says nothing as it stands: "acession_number", "dimesions".
+
+    Returns
+    -------
+    (ColumnMeaning, str) or None
+        None where no long name is so near.
+    """
+    form = plain(unit_in(name)[0])
+    if len(form) < _LONG:
+        return None
+    known = [one for one in _names() if len(one) >= _LONG]
+    # Two letters exchanged leave the same letters, and the first one: "heigth".
+    near = [one for one in known if one[0] == form[0] and sorted(one) == sorted(form)]
+    near += get_close_matches(form, known, n=1, cutoff=_ALMOST)
+    return (_names()[near[0]], near[0]) if near else None
 
 
 def same_stem(word: str, table: str) -> bool:

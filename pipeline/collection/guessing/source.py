@@ -100,6 +100,11 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
             f"{path.name}: XML of a kind that Kouros does not know; it knows LIDO, Adlib XML and MuseumPlus RIA. "
             "Export it as one of these, or as CSV or Excel, and try again"
         )
+    if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
+        raise CollectionError(
+            f"{path.name}: JSON that holds no object with names and values; export the objects as a list of such, or as "
+            "CSV or Excel, and try again"
+        )
     encoding = told.choices.get("encoding") or encoding_of(head)
     try:
         # A character that the end of what was read cuts in two is no fault.

@@ -36,6 +36,9 @@ _PAGES = (
 )
 """Names of the list of objects on a page of an API."""
 
+_WRAPPERS = ("artObject", "_source", "attributes", "object", "record", "item", "node", "fields", "document", "objekt")
+"""Names of one object on a page of its own, or of what a search engine found."""
+
 _NUMBER = re.compile(r"[+-]?\d+(?:[.,]\d+)?", re.ASCII)
 _OTHER = "other_measurements"
 _OF_LISTS = (*MEASURED, _OTHER)
@@ -142,7 +145,8 @@ def _unnested(value: Any) -> Iterator[Any]:
 def list_in(value: Any) -> str:
     """Return where a value lists objects, as [source] records says it; "" where it is an object itself, or a list.
 
-    A page of an API has a list by a name that such lists have, or nothing but it and a few facts about it.
+    A page of an API has a list by a name that such lists have, or nothing but it and a few facts about it; a page of
+    one object names it so.
 
     Parameters
     ----------
@@ -161,12 +165,14 @@ def list_in(value: Any) -> str:
         if named or (len(lists) == 1 and len(value) <= 4):
             return ".".join([*path, (named or lists)[0]])
         inner = [name for name, one in value.items() if isinstance(one, dict)]
-        page = next((name for name in inner if name in _PAGES), inner[0] if len(inner) == len(value) == 1 else None)
-        if lists or page is None:
-            return ""
-        path.append(page)
-        value = value[page]
-    return ""
+        within = next((name for name in inner if name in (*_PAGES, *_WRAPPERS)), None)
+        if within is None and len(inner) == len(value) == 1:
+            within = inner[0]
+        if lists or within is None:
+            break
+        path.append(within)
+        value = value[within]
+    return ".".join(path)
 
 
 def _is_list_of_objects(value: Any) -> bool:
