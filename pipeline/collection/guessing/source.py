@@ -102,8 +102,8 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         )
     if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
         raise CollectionError(
-            f"{path.name}: JSON that holds no object with names and values; export the objects as a list of such, or as "
-            "CSV or Excel, and try again"
+            f"{path.name}: JSON that holds no object with names and values; export the objects as a list of such, or "
+            "as CSV or Excel, and try again"
         )
     encoding = told.choices.get("encoding") or encoding_of(head)
     try:
