@@ -24,7 +24,8 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
 
     The whole object goes before its parts: "with base", then "overall" and what no part is named for, then framed,
     other named parts, mount, sheet, image.  Of several alike the largest is taken, never the height of one with the
-    width of another.  What is said of a base or foot is the base's.
+    width of another, but where a height stands alone beside nearly the same one with its sides.  What is said of a base
+    or foot is the base's.
 
     Parameters
     ----------
