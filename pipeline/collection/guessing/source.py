@@ -105,6 +105,8 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
             f"{path.name}: JSON that holds no object with names and values; export the objects as a list of such, or "
             "as CSV or Excel, and try again"
         )
+    if head[:2] in (b"\xff\xfe", b"\xfe\xff") and head.decode("utf-16", "ignore").lstrip()[:1] in ("{", "["):
+        raise CollectionError(f"{path.name}: JSON in UTF-16; save it as UTF-8, and try again")
     encoding = told.choices.get("encoding") or encoding_of(head)
     try:
         # A character that the end of what was read cuts in two is no fault.

@@ -127,8 +127,8 @@ def _objects(values: Values, file: str, where: str) -> Iterator[tuple[int, Mappi
         if found is None or any(not isinstance(one, dict) for one in listed):
             what = f"no list {where!r} of objects is there" if where else "no object, which has names and values"
             raise CollectionError(
-                f"{file}, line {line}: {what}; say in the mapping where the objects are listed, [source] records, or "
-                "leave out the files that hold none"
+                f"{getattr(line, 'file', '') or file}, line {line}: {what}; say in the mapping where the objects are "
+                "listed, [source] records, or leave out the files that hold none"
             )
         for one in listed:
             yield line, one

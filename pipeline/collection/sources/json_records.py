@@ -26,6 +26,23 @@ Values = Callable[[], Iterator[tuple[int, Any]]]
 """Gives the lines and values of a source from its beginning, as often as it is asked."""
 
 _BLOCK = 1 << 16
+
+
+class Line(int):
+    """A line, with the file of a folder that it stands in."""
+
+    file = ""
+
+
+def _all_said(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return an object in which a name that stands twice has a list of what both say, so that neither is lost."""
+    out: dict[str, Any] = {}
+    for name, value in pairs:
+        out[name] = [out[name], value] if name in out else value
+    return out
+
+
+_EXACT = json.JSONDecoder(parse_float=str, parse_int=str, parse_constant=str, object_pairs_hook=_all_said)
 _SPACE = re.compile(r"[\s\ufeff]*")
 
 
@@ -61,6 +78,12 @@ def read_values(stream: BinaryIO, file: str, *, exact: bool = False) -> Iterator
         if reader.at_end() and not array:
             return
         if array and reader.take("]"):
+            reader.skip()
+            if not reader.at_end():
+                raise CollectionError(
+                    f"{file}, line {reader.line}: something stands behind the end of the list, and would be left out "
+                    "unsaid; put each list into a file of its own, or write one record a line"
+                )
             return
         yield reader.line, reader.value()
         reader.skip()
@@ -173,7 +196,10 @@ def _values_of(folder: Path, files: Sequence[Path], digest: Any, *, exact: bool)
                 digest.update(f"{name}\0".encode("utf-8", "surrogatepass"))
                 digest.update(hashlib.file_digest(binary, "sha256").digest())
                 binary.seek(0)
-                yield from read_values(binary, name, exact=exact)
+                for number, value in read_values(binary, name, exact=exact):
+                    line = Line(number)
+                    line.file = name
+                    yield line, value
         except OSError as problem:
             raise unreadable(name, problem) from problem
 
@@ -183,7 +209,7 @@ class _Reader:
         self._stream = stream
         self._file = file
         self._decoder = codecs.getincrementaldecoder("utf-8")()
-        self._json = json.JSONDecoder(parse_float=str, parse_int=str) if exact else json.JSONDecoder()
+        self._json = _EXACT if exact else json.JSONDecoder()
         self._text = ""
         self._at = 0
         self._ended = False

@@ -129,10 +129,32 @@ def test_an_object_with_lists_of_its_own_is_no_page() -> None:
         ('{"items": [{"a": 1}]} {"other": 3}', r"line 1: no list 'items' of objects"),
         ('[{"a": 1}, "b"]', r"no object, which has names and values.*\[source\] records"),
         ('[{"object_number": "1"', "not JSON"),
+        ('[{"object_number": "1"}] [{"object_number": "2"}]', "behind the end of the list"),
     ],
 )
 def test_what_is_no_list_of_objects_is_refused_with_the_remedy(text: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "odd.json"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(CollectionError, match=message):
+        read(path)
+
+
+def test_a_name_that_stands_twice_loses_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "twice.json"
+    path.write_text('[{"object_number": "1", "title": "Jar", "title": "Lid", "height": NaN}]', encoding="utf-8")
+    (item,) = read(path)[1]
+    assert (item.title, item.height_m) == ("Jar; Lid", None)
+
+
+def test_a_file_of_a_folder_that_holds_no_object_is_named(tmp_path: Path) -> None:
+    home = as_folder(tmp_path)
+    written(home / "z" / "index.json", ["1", "2"])
+    with pytest.raises(CollectionError, match=r"z/index\.json, line 1: no object"):
+        read(home)
+
+
+def test_json_in_utf_16_is_refused_with_the_remedy(tmp_path: Path) -> None:
+    path = tmp_path / "wide.json"
+    path.write_text(json.dumps(RECORDS), encoding="utf-16")
+    with pytest.raises(CollectionError, match="save it as UTF-8"):
         read(path)
