@@ -120,3 +120,13 @@ def test_what_has_a_frame_is_a_picture_whatever_its_title_names() -> None:
         "1", "Room", title="Pistolas, Cuchillos, Cruces", dimensions=text, height_m=0.657, width_m=0.721, depth_m=0.038
     )
     assert classify(item).support is Support.HUNG
+
+
+@pytest.mark.parametrize(
+    ("cells", "medium"), [("oil on canvas|bronze", True), ("http://a.org/1.jpg|http://a.org/2.jpg", False)]
+)
+def test_media_are_materials_and_no_pictures(cells: str, medium: bool, tmp_path: Path) -> None:
+    one, two = cells.split("|")
+    path = tmp_path / "list.csv"
+    path.write_text(f"accession_num,title,media\n1,A,{one}\n2,B,{two}\n", encoding="utf-8")
+    assert ("medium" in guess(path).mapping.columns) is medium
