@@ -82,6 +82,12 @@ FLOOR = 0.02
 
 It is what the scatter between museums that were left out leaves over: see pipeline.verification.class_scores.
 """
+PICTURED_PARTS = re.compile(
+    r"\b(?:(?:un)?framed?|sheet|image|sight|canvas|stretcher|support\s*:|rahmen|blatt|leinwand|bildmaß|cadre|feuille|"
+    r"châssis|cornice|foglio|tela|marco|hoja|lienzo|moldura|folha|lijst|doekmaat|dagmaat|ram(?:me)?|blad(?:mål|maal)?)\b",
+    re.IGNORECASE,
+)
+"""What is measured of pictures alone: a frame, a sheet, an image, a canvas."""
 _READ = 400
 """Characters of a text that are searched."""
 _WORD = re.compile(r"[^\W\d_]+")
@@ -266,11 +272,18 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
     That is the likeliest class, but where nothing but a title speaks, and no depth says that it is a body. A title may
     as well name what a picture shows, and what is taken for a picture is then not held to stand. Where the title names
     nothing either, the face of a picture must be there, two sizes far larger than any depth: one size, or none,
-    is no sign of a picture, nor is a block of any size.
+    is no sign of a picture, nor is a block of any size.  Where the frame or the sheet was measured, it is one.
     """
     if not chances:
         return None
     first = chances[0]
+    if (
+        is_alone(item)
+        and not read.outright
+        and SHAPES["panel"](item)
+        and PICTURED_PARTS.search(item.dimensions[:_READ])
+    ):
+        return next(one for one in chances if one.object_class in PICTURES)
     faced = item.height_m and item.width_m and (item.depth_m or 0.0) <= FACE * min(item.height_m, item.width_m)
     if is_alone(item) and item.title and SHAPES["panel"](item) and not read.outright and (faced or not read.silent):
         flat = next(one for one in chances if one.object_class in PICTURES)

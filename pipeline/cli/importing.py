@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     "--choose",
     multiple=True,
     metavar="KEY=WHAT",
-    help="With --guess: a field's column (gallery=Standort), its unit (height_m.unit=mm), or header_row=4.",
+    help="With --guess: a field's column (gallery=Standort), its unit (height_m.unit=mm), header_row=4, records=items.",
 )
 @click.option("--write", type=click.Path(dir_okay=False, path_type=Path), help="With --guess: write it here, unasked.")
 @click.option(
@@ -65,8 +65,9 @@ def import_(
 ) -> None:
     """Read the museum's records into Kouros's inventory, by a mapping.
 
-    SOURCE is a file (CSV, TSV, XLSX, LIDO, Adlib XML, MuseumPlus RIA XML, Linked Art), a folder of CSV files that are
-    tables of one export, or the URL of a database; ${NAME} in a URL is taken from the environment.
+    SOURCE is a file (CSV, TSV, XLSX, JSON, LIDO, Adlib XML, MuseumPlus RIA XML, Linked Art), a folder of CSV files that
+    are tables of one export, a folder of JSON records, or the URL of a database; ${NAME} in a URL is taken from the
+    environment.
 
     \b
     Example: kouros import export.csv --mapping carnegie --dry-run

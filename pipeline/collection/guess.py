@@ -15,7 +15,8 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, usual_place
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
-from pipeline.collection.guessing.names import bare, is_side, unit_in
+from pipeline.collection.guessing.names import bare, is_side, misspelt, named, unit_in
+from pipeline.collection.guessing.sides import exchange_sides
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -39,7 +40,9 @@ MOST_REPEATED = 0.1
 MOST_STORES = 200
 """Places that are listed as stores at most."""
 
-_TABLES = ("csv", "tsv", "xlsx", "sql")
+_NAMING = ("title", "object_name", "classification", "medium")
+
+_TABLES = ("csv", "tsv", "xlsx", "sql", "json")
 """Formats whose columns are the museum's own."""
 
 _FORMATS = {"lido": "lido", "adlib": "adlib", "museumplus_ria": "museumplus", "linked_art": "linked_art"}
@@ -83,7 +86,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         most like an inventory is taken, and a database's dimensions and places are joined to it.
     choices : mapping of str to str
         What a person has chosen: a field and its column ("object_number": "Inv."; "-" for none), a field's unit
-        ("height_m.unit": "cm"), "header_row", "header_rows", "encoding", "delimiter", "decimal".
+        ("height_m.unit": "cm"), "header_row", "header_rows", "encoding", "delimiter", "decimal", "records".
 
     Returns
     -------
@@ -136,7 +139,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
 
 
 def _check_choices(choices: Mapping[str, str]) -> None:
-    own = ("header_row", "header_rows", "encoding", "delimiter", "decimal", "dimensions", "unit")
+    own = ("header_row", "header_rows", "encoding", "delimiter", "decimal", "dimensions", "unit", "records")
     for key in choices:
         if key not in own and key.removesuffix(".unit") not in MAPPABLE:
             raise CollectionError(
@@ -146,7 +149,14 @@ def _check_choices(choices: Mapping[str, str]) -> None:
 
 
 def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told: GuessNotes) -> Guess:
-    found = _chosen(name, columns, candidates(columns), told)
+    able = candidates(columns)
+    _add_misspelt(columns, able, told)
+    found = _chosen(name, columns, able, told)
+    if not any(key in found and found[key].filled for key in _NAMING):
+        told.doubts.append(
+            "no column says what the objects are: each is taken for a thing that stands; --choose object_name=COLUMN "
+            "(or title, classification, medium) names one that does"
+        )
     document = tomlkit.document()
     document.add(
         tomlkit.comment(f"Guessed from the columns of {' '.join(name.split())}. Look at every line; units above all.")
@@ -173,10 +183,12 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
             found["image"] = picture
         if "image" in found:
             told.doubts.append(pictures_said(columns, found["image"], found.values()))
+    if not {"height_m", "width_m"} & told.choices.keys():
+        exchange_sides(columns, found, told.doubts)
     usual = None if "gallery" in told.choices else usual_place(columns, found)
     if usual is not None:
         told.questions[:] = [question for question in told.questions if question.key != "gallery"]
-    fields, used = Fields(columns, told.choices, told.doubts, told.questions, usual).mapped(found)
+    fields, used = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery")).mapped(found)
     document["columns"] = fields
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")
@@ -212,6 +224,17 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     text = tomlkit.dumps(document)
     proposal = Proposal.model_validate(document.unwrap())
     return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure))
+
+
+def _add_misspelt(columns: Sequence[Column], able: dict[str, list[Column]], told: GuessNotes) -> None:
+    """Take columns whose names are nearly those of fields that no column has, and say so."""
+    for column in columns:
+        meant = misspelt(column.name) if column.filled and named(column.name) is None else None
+        if meant is not None and meant[0].field in MAPPABLE and meant[0].field not in able:
+            able[meant[0].field] = [column]
+            told.doubts.append(
+                f"column {column.name!r} is read as {meant[1]!r}, misspelt; --choose {meant[0].field}=- leaves it out"
+            )
 
 
 def _place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:

@@ -19,6 +19,9 @@ from pipeline.quantities import counted
 FEWEST = 20
 """Records that a contradiction of the whole source is told by: fewer may be chance."""
 
+FEWEST_SIDES = 8
+"""Records that tell one side from the other: that most of so few exchange them is no chance."""
+
 FEWEST_UNITS = 3
 """Rows in which a column of units speaks."""
 
@@ -121,8 +124,11 @@ def see_pairs(found: Evidence, pairs: Iterable[tuple[str, float, float]]) -> Non
             found.ratios[name] = [1.0 if alike or not column else float(f"{text / column:.3g}")]
     for one, two in combinations([side for side in SIDES if side in said], 2):
         (a, a_text), (b, b_text) = said[one], said[two]
-        crossed = agree(a, b_text, "length") and agree(b, a_text, "length") and not agree(a, a_text, "length")
-        found.tally(f"sides|{one}|{two}", shown=crossed)
+        crossed = agree(a, b_text, "length") and agree(b, a_text, "length")
+        straight = agree(a, a_text, "length") and agree(b, b_text, "length")
+        # A square, and a text that gives another part's size, tell nothing.
+        if crossed != straight:
+            found.tally(f"sides|{one}|{two}", shown=crossed)
 
 
 def audit(
@@ -158,7 +164,7 @@ def audit(
 
 def _sides(found: Evidence, columns: Mapping[str, ColumnMap], rows: Mapping[str, Sequence[str]]) -> Iterable[Suspicion]:
     for key in found.tallies:
-        does, could = _most(found, key) if key.startswith("sides|") else (0, 0)
+        does, could = _most(found, key, FEWEST_SIDES) if key.startswith("sides|") else (0, 0)
         if does:
             one, two = key.split("|")[1:]
             first, second = (_column(name, columns) for name in (one, two))
@@ -258,10 +264,10 @@ def _display(found: Evidence, rows: Mapping[str, Sequence[str]]) -> Iterable[Sus
         )
 
 
-def _most(found: Evidence, what: str) -> tuple[int, int]:
+def _most(found: Evidence, what: str, fewest: int = FEWEST) -> tuple[int, int]:
     """Return how many records show a contradiction, 0 unless most do, and how many could."""
     could, does = found.tallies.get(what, (0, 0))
-    return (does if could >= FEWEST and does > MOST * could else 0), could
+    return (does if could >= fewest and does > MOST * could else 0), could
 
 
 def _decimals(found: Evidence) -> Iterable[Suspicion]:

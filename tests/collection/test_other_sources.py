@@ -135,7 +135,7 @@ def test_without_the_package_its_mapping_says_what_there_is(tmp_path: Path) -> N
     (tmp_path / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     with pytest.raises(
         MappingError,
-        match=r"source: there is no format 'jsonl'.*Known are csv, tsv, xlsx, .*, museumplus, linked_art, sql, tables",
+        match=r"source: there is no format 'jsonl'.*Known are csv, tsv, xlsx, .*, linked_art, sql, tables, json",
     ):
         load_mapping(tmp_path / "mapping.toml")
 
@@ -164,6 +164,7 @@ def test_each_kind_has_its_own_name_and_settings() -> None:
         "linked_art",
         "sql",
         "tables",
+        "json",
     ]
     for one in SOURCES.own:
         assert one.Settings.model_fields["format"].annotation.__args__ == (one.name,)  # type: ignore[union-attr]

@@ -13,6 +13,8 @@ HANGS = "framed, as it hangs"
 """How the reason ends of what is said of a frame that counts."""
 _LAST = 9
 _LABELLED = frozenset({"height", "width", "depth", "diameter", "length", "thickness", "weight"})
+_SAME_HEIGHT = 0.1
+"""Difference of two heights up to which both are the thing's, with and without a finial or a foot."""
 _FLAT = 0.5
 """First number of a base over its second from which both lie in plan; below it the first is the base's own height."""
 
@@ -22,7 +24,8 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
 
     The whole object goes before its parts: "with base", then "overall" and what no part is named for, then framed,
     other named parts, mount, sheet, image.  Of several alike the largest is taken, never the height of one with the
-    width of another.  What is said of a base or foot is the base's.
+    width of another, but where a height stands alone beside nearly the same one with its sides.  What is said of a base
+    or foot is the base's.
 
     Parameters
     ----------
@@ -57,6 +60,11 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
                 if g[0].name.startswith(("overall", "without ")) and all(p.dimension in _LABELLED for p in g)
             ]
             out = _extents(max(own, key=_size), "of the object itself") | out if own else out
+        elif len(out) == 1 and "height" in out:
+            # A height alone, and the same thing with all its sides: "H.: 31.5 cm; 30.5 x 28.9 x 14.3 cm".
+            whole = [g for g in alike if g[0].name == chosen[0].name and _has_height(g, out["height"].value)]
+            sides = max((_extents(g, _reason(g, 1, False)) for g in whole), key=len, default=out)
+            out = sides | out
     bases = [g for g in groups.values() if is_base(g[0].name)]
     if bases:
         out |= _base(max(bases, key=_size))
@@ -64,6 +72,12 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     if mass is not None:
         out["mass"] = mass
     return Chosen(**out)
+
+
+def _has_height(group: list[DimensionPart], height: float) -> bool:
+    """Whether a group says nearly the same height, and other sides beside it."""
+    said = next((p.value for p in group if p.dimension == "height" and p.value), None)
+    return said is not None and len(group) > 1 and abs(said / height - 1.0) <= _SAME_HEIGHT
 
 
 def _telling(alike: list[list[DimensionPart]]) -> list[list[DimensionPart]]:
@@ -104,7 +118,7 @@ def _is_lost(dimensions: Dimensions, alike: list[list[DimensionPart]]) -> bool:
 def _rank(group: list[DimensionPart], hung: bool) -> int:
     """Return the place of a group in the order of preference, 0 first."""
     name = group[0].name
-    words = name.split()
+    words = name.replace("/", " ").split()  # "image/plate" is an image, and no word that nobody knows
     if "sight" in group[0].qualifiers:
         return 6
     if FRAMED.intersection(words):

@@ -6,7 +6,7 @@ import re
 from functools import cache
 
 from pipeline.collection.dimensions.lexicon import label_words, meanings
-from pipeline.collection.dimensions.parts import is_base, is_detail
+from pipeline.collection.dimensions.parts import FRAMED, is_base, is_detail
 from pipeline.collection.dimensions.result import Chosen, DimensionNote, DimensionPart, Dimensions
 
 _CARRIERS = frozenset({
@@ -21,6 +21,8 @@ _NUMBERING = frozenset("abcdefg")
 _LETTERS = re.compile(r"[^\W\d_]+")
 _SHARE_OF_HEIGHT = 0.05
 """Height of a base over that of the object from which it matters whether the one is in the other."""
+_WITHIN = 0.97
+"""A frame's side over that of what it holds from which it is no rounding."""
 _OPEN = frozenset({"height", "width", "depth", "length", "unlabelled"})
 
 
@@ -60,7 +62,7 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
         for part in read.parts
         if part.name in _labels() and part.value
     ]
-    out += _base_beside(read, chosen)
+    out += [*_base_beside(read, chosen), *_frame_within(read)]
     if chosen.height is None:
         out += [
             DimensionNote(
@@ -104,6 +106,19 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
             message = f"the size of {part.words!r} is taken for that of the whole object"
             out.append(DimensionNote("part", message, part.start, part.end))
     return tuple(out)
+
+
+def _frame_within(read: Dimensions) -> list[DimensionNote]:
+    """Return a doubt where a frame is smaller than what it holds: one of the two is written wrongly."""
+    framed = [part for part in read.parts if FRAMED.intersection(part.name.split())]
+    return [
+        DimensionNote("unused", f"{_shown(frame, read)} of the frame is less than {_shown(part, read)} within it",
+                      frame.start, frame.end)
+        for frame in framed
+        for part in read.parts
+        if part not in framed and part.dimension == frame.dimension and part.dimension in ("height", "width")
+        and frame.value and part.value and frame.value < _WITHIN * part.value
+    ][:1]  # fmt: skip
 
 
 def _base_beside(read: Dimensions, chosen: Chosen) -> list[DimensionNote]:

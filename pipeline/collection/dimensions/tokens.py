@@ -58,6 +58,9 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)(?:(?<=\bde )large\b|\blarge(?=\s+de\s+\d))"), "larg "),
     (re.compile(r"(?i)\bhors[ -]tout"), "horstout "),
     (re.compile(r"(?i)(?<![^\W_])[dln]['’](?=[^\W\d_]{2})"), "  "),  # l'ouverture, d'épaules
+    # What a list begins its entries with: "• Maße: o Tiefe: 17,2 cm o Breite: 29,4 cm"
+    (re.compile(r"[•‣▪●◦](?=\s*[^\W\d_])"), ";"),
+    (re.compile(r"(?<=\s)o(?=\s+[^\W\d_]{3,}\s*:)"), ";"),
     # What is measured so is the whole, and no handle: W. handle to handle 12 in.
     (re.compile(r"(?i)\bhandle to handle\b"), "across across   "),
     (re.compile(r"(?i)\bhandle to spout\b"), "across across  "),

@@ -151,7 +151,9 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
     found: dict[str, list[tuple[ColumnMeaning, Column]]] = {}
     for column in columns:
         what = said[id(column)]
-        if what is not None:
+        # A column called "media" may hold pictures, or their numbers.
+        pictures = what is not None and what.field == "medium" and (column.numeric or column.pictured > 0.5)
+        if what is not None and not pictures:
             found.setdefault(what.field, []).append((what, column))
     out: dict[str, list[Column]] = {}
     for name, able in found.items():

@@ -9,7 +9,7 @@ from statistics import median
 
 import tomlkit
 
-from pipeline.collection.display_words import flag_of, says_flags
+from pipeline.collection.display_words import flag_of, says_away, says_flags
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.names import bare, unit_in
@@ -155,6 +155,8 @@ class Fields:
         What is to be looked at, and what may be decided; grows.
     usual : Column or None
         Of the usual places of objects, which counts where that of the places now is empty.
+    place : Column or None
+        Of the places now.
     """
 
     columns: Sequence[Column]
@@ -162,6 +164,7 @@ class Fields:
     doubts: list[str]
     questions: list[Question]
     usual: Column | None = None
+    place: Column | None = None
 
     def mapped(self, found: Mapping[str, Column]) -> tuple[tomlkit.items.Table, list[Column]]:
         """Return the section, and the columns that it reads.
@@ -254,7 +257,13 @@ class Fields:
             if word.casefold() not in seen:
                 seen.add(word.casefold())
                 values[word] = meaning
-        if display and False not in known.values() and len(column.filled) < len(column.values):
+        if display and self._places_tell(column):
+            self.doubts.append(
+                f"column {column.name!r} is empty where {self.place.name if self.place else ''!r} names a gallery: an "
+                f'empty cell says nothing, and the place tells; put "" = false into [columns.{name}] values where it '
+                "means no"
+            )
+        elif display and False not in known.values() and len(column.filled) < len(column.values):
             values[""] = False  # a box that is ticked or not
             self.doubts.append(
                 f"column {column.name!r} says nothing but {', '.join(map(repr, known))}: an empty cell means "
@@ -264,6 +273,13 @@ class Fields:
         if unknown:
             self.doubts.append(f"column {column.name!r}: what is meant by {unknown}? Add it to [columns.{name}] values")
         return entry
+
+    def _places_tell(self, column: Column) -> bool:
+        """Whether places say by themselves what is not on display, and others are named where a flag is empty."""
+        if self.place is None or not any(map(says_away, self.place.distinct)):
+            return False
+        pairs = zip(column.values, self.place.values, strict=False)
+        return any(place.strip() and not flag.strip() and not says_away(place) for flag, place in pairs)
 
     def _measured(self, name: str, column: Column, common: str) -> tomlkit.items.Table | None:
         """Return the entry of a length or a mass; ``common`` is the unit of lengths that tell none."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 from typing import Annotated
 from unicodedata import combining, normalize
@@ -50,6 +51,10 @@ _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _OTHER = re.compile(r"[^\w]+|_")
 _SHORT = 4
 """Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
+_LONG = 5
+"""Letters from which a name that is nearly another one is hardly a name of its own."""
+_ALMOST = 0.9
+"""Likeness of two such names, 1 being the same: one letter in ten."""
 _WEAK = 1000
 """Rank of a name that is only part of what stands in the head."""
 
@@ -94,6 +99,56 @@ class ColumnMeaning:
     rank: int
     internal: bool = False
 
+
+_ELSEWHERE = frozenset(
+    {
+        *("image", "images", "img", "picture", "pictures", "photo", "photos", "photograph", "photographs", "thumbnail"),
+        *(
+            "thumbnails",
+            "media",
+            "visuel",
+            "visuels",
+            "bild",
+            "bilder",
+            "abbildungen",
+            "immagini",
+            "imagenes",
+            "imagem",
+        ),
+        *("afbeeldingen", "billeder", "iiif", "files", "file", "exhibition", "exhibitions", "exhibit", "ausstellungen"),
+        *(
+            "expositions",
+            "mostre",
+            "exposiciones",
+            "exposities",
+            "udstillinger",
+            "related",
+            "parts",
+            "creator",
+            "creators",
+        ),
+        *("artist", "artists", "maker", "makers", "people", "person", "agents", "constituents", "production", "author"),
+        *("documentation", "references", "bibliography", "publications", "literature", "provenance", "inscriptions"),
+        *(
+            "geographies",
+            "geography",
+            "places",
+            "links",
+            "rights",
+            "citations",
+            "children",
+            "parent",
+            "label",
+            "colors",
+        ),
+    }
+)
+"""Words of what an object has or what was made of it: a size, number or title within is not the object's."""
+
+_HOLDING = frozenset(
+    {"name", "value", "text", "label", "term", "content", "preflabel", "displayname", "de", "en", "fr"}
+)
+"""Names within a name that say only that its value follows: "object_names.name"."""
 
 _USUAL = frozenset({"home", "normal", "usual", "default", "permanent", "stamm", "habituel", "abituale", "habitual"})
 """Words of a place where an object mostly is: used where no column tells where it is now."""
@@ -213,6 +268,8 @@ def named(name: str) -> ColumnMeaning | None:
     """
     if name in MAPPABLE:
         return ColumnMeaning(name, 0)
+    if any(_ELSEWHERE.intersection(plain(above).split()) for above in path_of(name)[:-1]):
+        return None
     for form in _forms(name):
         found = _names().get(form)
         if found is not None:
@@ -222,6 +279,29 @@ def named(name: str) -> ColumnMeaning | None:
         if found is not None:
             return found
     return _within(name)
+
+
+def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
+    """Return what the name of a column would say if a letter or two of it were others, and the name that it has then.
+
+    Parameters
+    ----------
+    name : str
+        Of a column that says nothing as it stands: "acession_number", "dimesions".
+
+    Returns
+    -------
+    (ColumnMeaning, str) or None
+        None where no long name is so near.
+    """
+    form = plain(unit_in(name)[0])
+    if len(form) < _LONG:
+        return None
+    known = [one for one in _names() if len(one) >= _LONG]
+    # Two letters exchanged leave the same letters, and the first one: "heigth".
+    near = [one for one in known if one[0] == form[0] and sorted(one) == sorted(form)]
+    near += get_close_matches(form, known, n=1, cutoff=_ALMOST)
+    return (_names()[near[0]], near[0]) if near else None
 
 
 def same_stem(word: str, table: str) -> bool:
@@ -234,6 +314,11 @@ def same_stem(word: str, table: str) -> bool:
 def of_table(table: str, field: str) -> bool:
     """Whether the name of a table is that of a field, in the plural perhaps: "Standorte" of the gallery."""
     return any(found.field == field and same_stem(name.replace(" ", ""), table) for name, found in _names().items())
+
+
+def path_of(name: str) -> list[str]:
+    """Return the names of which the name of a column is a path: "location.onView" as ["location", "onView"]."""
+    return re.split(r"__|\.(?=[^\W\d_]{3}|[^\W\d_]+_)", name.strip("_ ."))
 
 
 def _forms(name: str) -> Iterator[str]:
@@ -254,7 +339,7 @@ def _forms(name: str) -> Iterator[str]:
     if len(halves) > 1:
         yield from map(plain, reversed(halves) if between else halves)
     # A path of names: what its last one says, "_currentLocation__onDisplay", "location.onView".
-    path = re.split(r"__|\.(?=[^\W\d_]{3}|[^\W\d_]+_)", name.strip("_ ."))
+    path = path_of(name)
     if path[-1] != name:
         yield plain(path[-1])
     # "measurement_height", "ca_objects.dimensions.dimensions_height"
@@ -265,6 +350,8 @@ def _forms(name: str) -> Iterator[str]:
     # "ca_storage_locations.hierarchy.preferred_labels.name": of no other table of words is it the first.
     if len(path) > 2:
         yield plain(path[0])
+    if len(path) > 1 and plain(path[-1]).replace(" ", "") in _HOLDING:
+        yield plain(path[-2])
     # What stands in brackets may be a language.
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:

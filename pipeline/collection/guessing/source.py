@@ -15,10 +15,14 @@ from pipeline.collection.guessing.columns import Column, candidates, columns_of
 from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.long_rows import long_form_of
 from pipeline.collection.guessing.text_files import LOOKED_AT, delimiter_of, encoding_of, first_lines, table_head
+from pipeline.collection.limits import STANDARD
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.opening import open_source
-from pipeline.collection.sources.files import head_of, unreadable
+from pipeline.collection.sources.files import head_of, unpacked, unreadable
+from pipeline.collection.sources.json_objects import list_in
+from pipeline.collection.sources.json_records import files_of as json_files
+from pipeline.collection.sources.json_records import read_values
 from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
 from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import recognised
@@ -77,9 +81,10 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
     if path.is_dir():
         kind = recognised(str(path), b"")
         if kind is not None:
-            return {"format": kind.name}
+            return _json_of(path, told) if kind.name == "json" else {"format": kind.name}
         raise CollectionError(
-            f"{path}: a folder without CSV files; name the museum's export itself, or the folder with its tables"
+            f"{path}: a folder without CSV or JSON files; name the museum's export itself, or the folder with its "
+            "tables"
         )
     try:
         head = head_of(path, SNIFFED)
@@ -89,7 +94,7 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         raise CollectionError(f"{path.name}: packed by gzip, and damaged ({problem}); export it again") from problem
     kind = recognised(str(path), head)
     if kind is not None:
-        return {"format": kind.name}
+        return _json_of(path, told) if kind.name == "json" else {"format": kind.name}
     if head.lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n\x00").startswith(b"<"):
         raise CollectionError(
             f"{path.name}: XML of a kind that Kouros does not know; it knows LIDO, Adlib XML and MuseumPlus RIA. "
@@ -97,9 +102,11 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         )
     if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
         raise CollectionError(
-            f"{path.name}: JSON of a kind that Kouros does not know; it knows Linked Art. Export it as that, or as CSV "
-            "or Excel, and try again"
+            f"{path.name}: JSON that holds no object with names and values; export the objects as a list of such, or "
+            "as CSV or Excel, and try again"
         )
+    if head[:2] in (b"\xff\xfe", b"\xfe\xff") and head.decode("utf-16", "ignore").lstrip()[:1] in ("{", "["):
+        raise CollectionError(f"{path.name}: JSON in UTF-16; save it as UTF-8, and try again")
     encoding = told.choices.get("encoding") or encoding_of(head)
     try:
         # A character that the end of what was read cuts in two is no fault.
@@ -113,6 +120,20 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
     told.sure.append(f"{encoding}, cells parted by {delimiter!r}")
     _set_head(source, first_lines(text, delimiter, LOOKED_AT + 60), told)
     return source
+
+
+def _json_of(path: Path, told: GuessNotes) -> dict[str, Any]:
+    """Return how plain JSON is read: where its first value lists the objects."""
+    file = json_files(path, deep=True)[0] if path.is_dir() else path
+    try:
+        with file.open("rb") as packed, closing(unpacked(packed, file.name, STANDARD.bytes)) as binary:
+            _, first = next(read_values(binary, file.name, exact=True), (0, None))
+    except OSError as problem:
+        raise unreadable(file, problem) from problem
+    where = told.choices.get("records", list_in(first))
+    if where:
+        told.sure.append(f"objects are listed as {where!r}")
+    return {"format": "json"} | ({"records": where} if where else {})
 
 
 def delimited_of(folder: Path, told: GuessNotes) -> dict[str, str]:

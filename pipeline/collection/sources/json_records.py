@@ -1,21 +1,52 @@
-"""The values of a JSON file, one by one: an array, one value a line, or one alone."""
+"""The values of JSON files, one by one: an array, one value a line, one alone, or the files of a folder."""
 
 from __future__ import annotations
 
 import codecs
+import hashlib
 import json
 import re
-from collections.abc import Iterator
-from typing import Any, BinaryIO
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from io import BufferedReader
+from pathlib import Path
+from typing import Any, BinaryIO, ClassVar
 
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.base import FileSource, Opened, Request
 from pipeline.collection.sources.delimited import RECORD_LIMIT
+from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.rows import Row
+
+FILES = ("*.json", "*.jsonld", "*.jsonl", "*.ndjson")
+"""What counts in a folder."""
+
+Values = Callable[[], Iterator[tuple[int, Any]]]
+"""Gives the lines and values of a source from its beginning, as often as it is asked."""
 
 _BLOCK = 1 << 16
+
+
+class Line(int):
+    """A line, with the file of a folder that it stands in."""
+
+    file = ""
+
+
+def _all_said(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return an object in which a name that stands twice has a list of what both say, so that neither is lost."""
+    out: dict[str, Any] = {}
+    for name, value in pairs:
+        out[name] = [out[name], value] if name in out else value
+    return out
+
+
+_EXACT = json.JSONDecoder(parse_float=str, parse_int=str, parse_constant=str, object_pairs_hook=_all_said)
 _SPACE = re.compile(r"[\s\ufeff]*")
 
 
-def read_values(stream: BinaryIO, file: str) -> Iterator[tuple[int, Any]]:
+def read_values(stream: BinaryIO, file: str, *, exact: bool = False) -> Iterator[tuple[int, Any]]:
     """Yield the values of a file with the line where each begins; those of an array, or of several one by one.
 
     Parameters
@@ -24,6 +55,8 @@ def read_values(stream: BinaryIO, file: str) -> Iterator[tuple[int, Any]]:
         The file, at its beginning, as UTF-8.
     file : str
         Its name in messages.
+    exact : bool
+        Whether numbers are texts with the characters that they have in the file: 1913.20 stays 1913.20.
 
     Yields
     ------
@@ -35,7 +68,7 @@ def read_values(stream: BinaryIO, file: str) -> Iterator[tuple[int, Any]]:
     CollectionError
         For what is no JSON, a value beyond RECORD_LIMIT characters, or one that is nested too deeply.
     """
-    reader = _Reader(stream, file)
+    reader = _Reader(stream, file, exact=exact)
     reader.skip()
     if reader.at_end():
         raise CollectionError(f"{file}: empty; export it again")
@@ -45,18 +78,138 @@ def read_values(stream: BinaryIO, file: str) -> Iterator[tuple[int, Any]]:
         if reader.at_end() and not array:
             return
         if array and reader.take("]"):
+            reader.skip()
+            if not reader.at_end():
+                raise CollectionError(
+                    f"{file}, line {reader.line}: something stands behind the end of the list, and would be left out "
+                    "unsaid; put each list into a file of its own, or write one record a line"
+                )
             return
         yield reader.line, reader.value()
         reader.skip()
         reader.take(",")
 
 
+def files_of(folder: Path, *, deep: bool = False) -> list[Path]:
+    """Return the JSON files of a folder by name, with those of its own folders where it is read deeply.
+
+    Parameters
+    ----------
+    folder : Path
+        That exists.
+    deep : bool
+        Whether its folders count; hidden ones never do.
+
+    Returns
+    -------
+    list of Path
+
+    Raises
+    ------
+    CollectionError
+        For a folder that cannot be read.
+    """
+    look = folder.rglob if deep else folder.glob
+    try:
+        found = {path for pattern in FILES for path in look(pattern) if path.is_file()}
+    except OSError as problem:
+        raise unreadable(folder, problem) from problem
+    return sorted(path for path in found if not any(part.startswith(".") for part in path.relative_to(folder).parts))
+
+
+class JsonSource(FileSource):
+    """A JSON file, or a folder of such files: who extends it writes ``records``."""
+
+    exact: ClassVar[bool] = False
+    """Whether numbers keep their characters."""
+    deep: ClassVar[bool] = False
+    """Whether the folders of a folder are read."""
+
+    @abstractmethod
+    def records(self, values: Values, file: str, request: Request) -> Iterator[Row]:
+        """Yield the header and the rows.
+
+        Parameters
+        ----------
+        values : callable
+            Gives the lines and values.
+        file : str
+            The name of the source, for messages.
+        request : Request
+            What is asked for.
+        """
+
+    @contextmanager
+    def open(self, request: Request) -> Iterator[Opened]:
+        """Open the file, or all files of the folder in the order of their names."""
+        path = Path(request.where)
+        if not path.is_dir():
+            with super().open(request) as opened:
+                yield opened
+            return
+        files = files_of(path, deep=self.deep)
+        if not files:
+            raise CollectionError(f"{path}: a folder without {', '.join(FILES)}; name the museum's export itself")
+        try:
+            size = sum(file.stat().st_size for file in files)
+        except OSError as problem:
+            raise unreadable(path, problem) from problem
+        if size > request.limits.bytes:
+            raise CollectionError(
+                f"{path}: {size:,} bytes, more than {request.limits.bytes:,}; export fewer objects, or raise [limits] "
+                "megabytes"
+            )
+        digest = hashlib.sha256()
+
+        def values() -> Iterator[tuple[int, Any]]:
+            return _values_of(path, files, digest, exact=self.exact)
+
+        yield Opened(path.name, self.records(values, path.name, request), digest.hexdigest)
+
+    def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
+        """Yield the header and the objects.
+
+        Parameters
+        ----------
+        binary, file, request : BufferedReader, str, Request
+            As of `FileSource.rows`.
+
+        Yields
+        ------
+        Row
+            First the header.
+        """
+
+        def values() -> Iterator[tuple[int, Any]]:
+            binary.seek(0)
+            return read_values(binary, file, exact=self.exact)
+
+        return self.records(values, file, request)
+
+
+def _values_of(folder: Path, files: Sequence[Path], digest: Any, *, exact: bool) -> Iterator[tuple[int, Any]]:
+    """Yield the values of files; what they are told from goes into the digest."""
+    for path in files:
+        name = path.relative_to(folder).as_posix()
+        try:
+            with path.open("rb") as binary:
+                digest.update(f"{name}\0".encode("utf-8", "surrogatepass"))
+                digest.update(hashlib.file_digest(binary, "sha256").digest())
+                binary.seek(0)
+                for number, value in read_values(binary, name, exact=exact):
+                    line = Line(number)
+                    line.file = name
+                    yield line, value
+        except OSError as problem:
+            raise unreadable(name, problem) from problem
+
+
 class _Reader:
-    def __init__(self, stream: BinaryIO, file: str) -> None:
+    def __init__(self, stream: BinaryIO, file: str, *, exact: bool) -> None:
         self._stream = stream
         self._file = file
         self._decoder = codecs.getincrementaldecoder("utf-8")()
-        self._json = json.JSONDecoder()
+        self._json = _EXACT if exact else json.JSONDecoder()
         self._text = ""
         self._at = 0
         self._ended = False

@@ -20,11 +20,11 @@ https://linked.art/model/base/ for names, numbers and statements.
 
 from __future__ import annotations
 
-import hashlib
 import re
+import zlib
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from io import BufferedReader
+from contextlib import suppress
+from itertools import islice
 from math import isfinite
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -32,9 +32,9 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field
 
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.sources.base import HEAD, FileSource, Opened, Request, SourceSettings
-from pipeline.collection.sources.files import unreadable
-from pipeline.collection.sources.json_records import read_values
+from pipeline.collection.sources.base import HEAD, Request, SourceSettings
+from pipeline.collection.sources.files import head_of
+from pipeline.collection.sources.json_records import JsonSource, Values, files_of
 from pipeline.collection.sources.measurement_terms import (
     KIND_CONCEPTS,
     UNIT_CONCEPTS,
@@ -45,8 +45,8 @@ from pipeline.collection.sources.measurement_terms import (
 from pipeline.collection.sources.measurements import COLUMNS, MeasuredSettings, Measurements, joined, row_of
 from pipeline.collection.sources.rows import Row, as_text
 
-FILES = ("*.json", "*.jsonld", "*.jsonl", "*.ndjson")
-"""What counts in a folder."""
+_LOOKED_AT = 100
+"""Files of a folder in one of which the model must be named."""
 
 NARROW = 0.05
 """Relative width up to which the middle of two limits stands for the value."""
@@ -318,7 +318,7 @@ class LinkedArtSettings(MeasuredSettings):
     format: Literal["linked_art"] = Field(description="The kind of source.")
 
 
-class LinkedArt(FileSource):
+class LinkedArt(JsonSource):
     """A file of Linked Art records, or a folder of such files."""
 
     name = "linked_art"
@@ -326,64 +326,32 @@ class LinkedArt(FileSource):
     Settings: ClassVar[type[SourceSettings]] = LinkedArtSettings
 
     def recognises(self, where: str, head: bytes) -> bool:
-        """Say whether the model or its words are named at its beginning; of a folder, whether it holds such files."""
-        start = head[:HEAD]
-        if b"linked.art" in start or b"HumanMadeObject" in start or b"ManMadeObject" in start:
+        """Say whether the model or its words are named at its beginning; of a folder, in one of its first files."""
+        if _speaks(head[:HEAD]):
             return True
-        return "://" not in where and Path(where).is_dir() and bool(_files(Path(where)))
+        path = Path(where)
+        if "://" in where or not path.is_dir():
+            return False
+        # What cannot be read is told by who reads it.
+        with suppress(OSError, CollectionError, zlib.error):
+            return any(_speaks(head_of(file, HEAD)) for file in islice(files_of(path), _LOOKED_AT))
+        return False
 
-    @contextmanager
-    def open(self, request: Request) -> Iterator[Opened]:
-        """Open the file, or all files of the folder in the order of their names."""
-        path = Path(request.where)
-        if not path.is_dir():
-            with super().open(request) as opened:
-                yield opened
-            return
-        files = _files(path)
-        if not files:
-            raise CollectionError(f"{path}: a folder without {', '.join(FILES)}; name the museum's export itself")
-        try:
-            size = sum(file.stat().st_size for file in files)
-        except OSError as problem:
-            raise unreadable(path, problem) from problem
-        if size > request.limits.bytes:
-            raise CollectionError(
-                f"{path}: {size:,} bytes, more than {request.limits.bytes:,}; export fewer objects, or raise [limits] "
-                "megabytes"
-            )
-        digest = hashlib.sha256()
-        values = _values_of(files, digest)
-        yield Opened(path.name, read_linked_art(values, path.name, unit=request.settings.unit), digest.hexdigest)
-
-    def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
+    def records(self, values: Values, file: str, request: Request) -> Iterator[Row]:
         """Yield the header and the objects.
 
         Parameters
         ----------
-        binary, file, request : BufferedReader, str, Request
-            As of `FileSource.rows`.
+        values, file, request : callable, str, Request
+            As of `JsonSource.records`.
 
         Yields
         ------
         Row
             First the header.
         """
-        return read_linked_art(read_values(binary, file), file, unit=request.settings.unit)
+        return read_linked_art(values(), file, unit=request.settings.unit)
 
 
-def _files(folder: Path) -> list[Path]:
-    return sorted({path for pattern in FILES for path in folder.glob(pattern) if path.is_file()})
-
-
-def _values_of(files: Sequence[Path], digest: Any) -> Iterator[tuple[int, Any]]:
-    """Yield the values of files; what they are told from goes into the digest."""
-    for path in files:
-        try:
-            with path.open("rb") as binary:
-                digest.update(f"{path.name}\0".encode("utf-8", "surrogatepass"))
-                digest.update(hashlib.file_digest(binary, "sha256").digest())
-                binary.seek(0)
-                yield from read_values(binary, path.name)
-        except OSError as problem:
-            raise unreadable(path.name, problem) from problem
+def _speaks(head: bytes) -> bool:
+    return any(word in head for word in (b"linked.art", b"HumanMadeObject", b"ManMadeObject"))

@@ -13,7 +13,8 @@ def _words(text: str) -> frozenset[str]:
 
 KINDS: dict[str, frozenset[str]] = {
     "height": _words(
-        "height h höhe hauteur altezza altura alto hoogte korkeus höjd højde høyde înălțime înălţime inaltime 高さ 高"
+        "height h höhe hauteur altezza altura alto hoogte korkeus höjd højde høyde hojde hoejde înălțime înălţime "
+        "inaltime 高さ 高"
     ),
     "width": _words(
         "width w breadth breite largeur larghezza anchura ancho largura breedte leveys bredd bredde "
@@ -79,7 +80,8 @@ UNIT_CONCEPTS: dict[str, str] = {
 PARTS: dict[str, frozenset[str]] = {
     "": _words(
         "overall total whole complete object gesamt gesamtmaß gesamtmaße objekt objektmaß ensemble totale complessivo "
-        "volledig geheel totaal compleet helhet kokonaisuus conjunto todo ansamblu 全体 本体"
+        "volledig geheel totaal compleet helhet kokonaisuus conjunto todo ansamblu sheet blatt blattmaß blad bladmål "
+        "bladmaal feuille foglio hoja folha canvas leinwand doek doekmaat paneel netto nettomål nettomaal 全体 本体"
     ),
     "base": _words("base plinth pedestal sockel sockelmaß socle basamento peana pedestal sokkel jalusta"),
     "frame": _words("frame rahmen rahmenmaß rahmenaußenmaß cadre cornice marco moldura lijst ram ramme kehys"),

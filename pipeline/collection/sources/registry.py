@@ -8,6 +8,7 @@ from pipeline.collection.sources.adlib import Adlib
 from pipeline.collection.sources.base import Source, SourceSettings
 from pipeline.collection.sources.database import Database
 from pipeline.collection.sources.delimited import Csv, Tsv
+from pipeline.collection.sources.json_objects import Json
 from pipeline.collection.sources.lido import Lido
 from pipeline.collection.sources.linked_art import LinkedArt
 from pipeline.collection.sources.museumplus import MuseumPlus
@@ -38,7 +39,9 @@ def _source(value: object) -> Source:
 
 
 SOURCES: Registry[Source] = Registry(
-    "kouros.sources", (Csv(), Tsv(), Xlsx(), Lido(), Adlib(), MuseumPlus(), LinkedArt(), Database(), Tables()), _source
+    "kouros.sources",
+    (Csv(), Tsv(), Xlsx(), Lido(), Adlib(), MuseumPlus(), LinkedArt(), Database(), Tables(), Json()),
+    _source,
 )
 """All kinds of sources, in the order in which they are asked whether they recognise one."""
 
