@@ -100,49 +100,16 @@ class ColumnMeaning:
     internal: bool = False
 
 
-_ELSEWHERE = frozenset(
-    {
-        *("image", "images", "img", "picture", "pictures", "photo", "photos", "photograph", "photographs", "thumbnail"),
-        *(
-            "thumbnails",
-            "media",
-            "visuel",
-            "visuels",
-            "bild",
-            "bilder",
-            "abbildungen",
-            "immagini",
-            "imagenes",
-            "imagem",
-        ),
-        *("afbeeldingen", "billeder", "iiif", "files", "file", "exhibition", "exhibitions", "exhibit", "ausstellungen"),
-        *(
-            "expositions",
-            "mostre",
-            "exposiciones",
-            "exposities",
-            "udstillinger",
-            "related",
-            "parts",
-            "creator",
-            "creators",
-        ),
-        *("artist", "artists", "maker", "makers", "people", "person", "agents", "constituents", "production", "author"),
-        *("documentation", "references", "bibliography", "publications", "literature", "provenance", "inscriptions"),
-        *(
-            "geographies",
-            "geography",
-            "places",
-            "links",
-            "rights",
-            "citations",
-            "children",
-            "parent",
-            "label",
-            "colors",
-        ),
-    }
-)
+_ELSEWHERE = frozenset({
+    "image", "images", "img", "picture", "pictures", "photo", "photos", "photograph", "photographs", "thumbnail",
+    "thumbnails", "media", "visuel", "visuels", "bild", "bilder", "abbildungen", "immagini", "imagenes", "imagem",
+    "afbeeldingen", "billeder", "iiif", "files", "file", "exhibition", "exhibitions", "exhibit", "ausstellungen",
+    "expositions", "mostre", "exposiciones", "exposities", "udstillinger", "related", "parts", "creator",
+    "creators", "artist", "artists", "maker", "makers", "people", "person", "agents", "constituents", "production",
+    "author", "documentation", "references", "bibliography", "publications", "literature", "provenance",
+    "inscriptions", "geographies", "geography", "places", "links", "rights", "citations", "children", "parent",
+    "label", "colors",
+})  # fmt: skip
 """Words of what an object has or what was made of it: a size, number or title within is not the object's."""
 
 _HOLDING = frozenset(
