@@ -12,7 +12,7 @@ from pipeline.quantities import Array, G
 from pipeline.records import Curve, Excitation, Scene, Support
 
 NO_VERTICAL = "the motion has no vertical component: what that would lift or load is not in this"
-"""Said of what the vertical shaking is the half of, under a motion without any."""
+"""Said of what the vertical shaking loads or unloads, under a motion without any."""
 
 SENSITIVE = flags.SENSITIVE
 NO_TILT = 16

@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 from pipeline.kernels import flags
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.models.common import (
+    NO_VERTICAL,
     SENSITIVE,
     broadcast,
     contact_lost,
@@ -299,5 +300,6 @@ ROCKING = Model(
     listed="Table 1, Rigid: Rocking",
     tips=True,
     pictures=(Figure("stability", _stability),),
-    says=(HARMLESS, UNHARMED, OVERTURNS),
+    vertical=True,
+    says=(HARMLESS, UNHARMED, OVERTURNS, NO_VERTICAL),
 )

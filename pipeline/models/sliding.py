@@ -18,7 +18,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.models.common import SHIFT, curve, lift_ratios, needs, unless_free
+from pipeline.models.common import NO_VERTICAL, SHIFT, curve, lift_ratios, needs, unless_free
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.quantities import Array, Quantity
 from pipeline.records import (
@@ -164,6 +164,8 @@ SLIDING = Model(
     listed="Table 1, Rigid: Sliding",
     supports=(Support.FREESTANDING,),
     needs_size=False,
+    vertical=True,
+    says=(NO_VERTICAL,),
     room_settles=True,
     pictures=(
         ChartFigure(

@@ -49,7 +49,7 @@ from pipeline.kernels import standing_body as kernel
 from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.kernels.standing import standing_batch
-from pipeline.models.common import ROUNDING, SENSITIVE, SHIFT, Quiet, lift_ratios, needs, unless_free
+from pipeline.models.common import NO_VERTICAL, ROUNDING, SENSITIVE, SHIFT, Quiet, lift_ratios, needs, unless_free
 from pipeline.models.doubt import APART, apart, doubt
 from pipeline.models.flips import (
     ALL,
@@ -445,5 +445,6 @@ STANDING = Model(
     ),
     supports=(Support.FREESTANDING,),
     tips=True,
-    says=(HARMLESS, UNHARMED, OVERTURNS, SLIDES),
+    vertical=True,
+    says=(HARMLESS, UNHARMED, OVERTURNS, SLIDES, NO_VERTICAL),
 )

@@ -250,7 +250,7 @@ class Model:
         Of a model of one direction: whether it is shaken across the object's width where that is known, instead of
         along it.
     vertical : bool
-        Whether the vertical shaking is so much of it that its findings say where a motion has none.
+        Whether the vertical shaking loads or unloads it, so that its findings say where a motion has none.
     searched : mapping of str to str
         Parameters over whose range the demand is not monotone -> the optional parameter that takes the upper end of the
         range, the other then being the lower: the model searches the band between them.

@@ -97,10 +97,16 @@ def test_a_house_rule_says_it_of_many_and_is_named() -> None:
 
 
 def test_a_motion_without_a_vertical_says_so() -> None:
-    held = replace(WORK, hanging=Hanging.TWO_HOOKS)
-    for up, said in ((0.0, True), (0.3, False)):
-        for finding in found(held, shaken(up)).values():
-            assert (NO_VERTICAL in finding.note) == said
+    """Of what hangs, and of what slides and tips: weight holds it, and the vertical shaking takes from that."""
+    vase = Item("2", "G", object_name="vase", height_m=0.4, width_m=0.15, depth_m=0.15, mass_kg=2.0)
+    ran = set()
+    for item in (replace(WORK, hanging=Hanging.TWO_HOOKS), vase):
+        for up, said in ((0.0, True), (0.3, False)):
+            findings = found(item, shaken(up))
+            ran |= findings.keys()
+            for name in findings.keys() & {"unhooking", "hanger_load", "sliding", "standing"}:
+                assert (NO_VERTICAL in findings[name].note) == said
+    assert ran >= {"unhooking", "hanger_load", "sliding", "standing"}
 
 
 def test_what_hangs_swings_along_its_width_and_opens_across_it() -> None:
