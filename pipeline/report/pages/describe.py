@@ -210,6 +210,7 @@ class Sayings:
         self._findings: Memory[FindingView] = Memory()
         self._numbers: Memory[NumberView] = Memory()
         self._origins: Memory[str] = Memory()
+        self._assumed: Memory[str] = Memory()
 
     def finding(self, f: Finding) -> FindingView:
         """Return a finding in words.
@@ -313,7 +314,7 @@ class Sayings:
 
     def assumed(self, text: str) -> str:
         """Say what was assumed, in the language and the lengths of the reader."""
-        return self._units.restated(said(clean(text)))
+        return self._assumed.had(text, lambda: self._units.restated(said(clean(text))))
 
 
 def taken_words(scene: Scene) -> str:
