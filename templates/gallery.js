@@ -18,7 +18,7 @@
       row.hidden = !fits;
       count += fits ? 1 : 0;
     });
-    shown.textContent = shown.dataset.words.replace("0", count);
+    shown.textContent = shown.dataset.words.replace("0", String(count).replace(/\B(?=(\d{3})+$)/g, shown.dataset.comma));
   }
   function key(row, column) {
     if (column === 0) { return row.cells[0].textContent; }

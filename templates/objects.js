@@ -43,7 +43,7 @@
       row.hidden = !fits;
       count += fits ? 1 : 0;
     });
-    shown.textContent = shown.dataset.words.replace("0", count);
+    shown.textContent = shown.dataset.words.replace("0", String(count).replace(/\B(?=(\d{3})+$)/g, shown.dataset.comma));
     turns.forEach(function (one) { if (one.tagName === "A") { one.href = one.getAttribute("href").split("#")[0] + (address() ? "#" + address() : ""); } });
     if (count === 0) { elsewhere(find.value.trim()); }
   }

@@ -92,6 +92,14 @@ def test_it_is_whole_with_scripts_off(browser: Chrome, pages: dict[str, Path], n
     assert heading
 
 
+def test_the_list_of_objects_tells_how_many_it_shows(browser: Chrome, demo_report: Path) -> None:
+    """The inventory has 2,000 rows, and only one of the number 2016.7."""
+    for sought, told in (("", "2,000 shown"), ("#find=2016.7", "1 shown")):
+        browser.get("about:blank")
+        browser.get((demo_report / "objects.html").as_uri() + sought)
+        assert browser.find_element("css selector", "output").text == told
+
+
 def test_no_gallery_is_heavy(sizes: dict[Path, int]) -> None:
     assert sum(sizes.values()) == 1374  # the demonstration's inventory, what is on display of it
     heavy = {p.name: p.stat().st_size for p, n in sizes.items() if p.stat().st_size >= 1.7e6 * max(1.0, n / 300)}

@@ -210,6 +210,7 @@ class Sayings:
         self._findings: Memory[FindingView] = Memory()
         self._numbers: Memory[NumberView] = Memory()
         self._origins: Memory[str] = Memory()
+        self._assumed: Memory[str] = Memory()
 
     def finding(self, f: Finding) -> FindingView:
         """Return a finding in words.
@@ -247,7 +248,7 @@ class Sayings:
             screen=said(clean(f.screen)),
             note=said(clean(f.note)),
             motion=self._motion(f.motion_hash, f.motion),
-            assumptions=tuple(said(clean(text)) for text in f.assumptions),
+            assumptions=tuple(self.assumed(text) for text in f.assumptions),
             size="" if f.utilisation is None or isnan(f.utilisation) else f"{min(f.utilisation, 1e9):.3g}",
         )
 
@@ -307,7 +308,13 @@ class Sayings:
     def _number(self, name: str, e: Estimate) -> NumberView:
         span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
         text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
-        return NumberView(text, self.origin(e.origin), clean(e.note), clean(e.source))
+        # As among the assumptions of the object, where the same text is named once.
+        note = self.assumed(e.note) if e.origin is Origin.ASSUMED else clean(e.note)
+        return NumberView(text, self.origin(e.origin), note, clean(e.source))
+
+    def assumed(self, text: str) -> str:
+        """Say what was assumed, in the language and the lengths of the reader."""
+        return self._assumed.had(text, lambda: self._units.restated(said(clean(text))))
 
 
 def taken_words(scene: Scene) -> str:
@@ -378,7 +385,7 @@ class Describer:
             measures=self._measures(assessment),
             figures=self._figures(ordered, assessment.recommendations) if state is State.ACT and fails else (),
             numbers=tuple(self._sayings.number(name, estimate) for name, estimate in estimates),
-            assumptions=tuple(dict.fromkeys(said(clean(text)) for text in named)),
+            assumptions=tuple(dict.fromkeys(self._sayings.assumed(text) for text in named)),
             statements=tuple(said(clean(text)) for text in scene.statements),
             missing=tuple(missing_words(clean(m)) for m in scene.missing),
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),

@@ -159,8 +159,8 @@ def _act(view: ObjectView, advice: Recommendation | None, units: Units) -> WalkR
 
 def _measuring(view: ObjectView) -> WalkRow:
     asked = _asked(view)
-    told = few(_("Measure: %(what)s") % {"what": ", ".join(asked)})
-    return WalkRow(view.number, _title(view), told, photo=_photo(view))
+    # The heading above says that it is to be measured.
+    return WalkRow(view.number, _title(view), few(", ".join(asked)), photo=_photo(view))
 
 
 def _asked(view: ObjectView) -> list[str]:
