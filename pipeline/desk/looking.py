@@ -327,7 +327,10 @@ def house(asked: Asked) -> DeskAnswer:
 def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] | None = None) -> dict[str, Any]:
     """Return what the page of house rules shows."""
     run = asked.site.run
-    given = {name: asked.query.get(name, "") for name in ("class", "gallery", "states")} | dict(typed or {})
+    # What the form does not offer is not chosen: it would show "all", and count none.
+    offered = {"class": run.classes, "gallery": run.galleries, "states": STATED}
+    given = {name: asked.query.get(name, "") for name in offered}
+    given = {name: text if text in offered[name] else "" for name, text in given.items()} | dict(typed or {})
     states = given.get("states") or "hanging"
     about = [one for one in run.objects if one.on_display and given["class"] in ("", one.object_class)
              and given["gallery"] in ("", one.gallery)]  # fmt: skip

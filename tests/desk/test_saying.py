@@ -138,6 +138,11 @@ def test_while_a_night_is_at_work_what_was_typed_stays(
 
 def test_a_house_rule_goes_into_the_settings_once(visitor: Visitor, museum: Path) -> None:
     page = visitor.get("/house")
+    # What is not offered is not chosen, nor counted.
+    for asked in ("class=dragon", "gallery=Nowhere", "states=mood"):
+        other = visitor.get(f"/house?{asked}").page
+        assert not other.xpath("//select[@name='class' or @name='gallery']/option[@selected and @value != '']")
+        assert "0 objects" not in other.text_content()
     keys = {name: page.hidden("/house/rule", name) for name in ("token", "version")}
     rule = {"class": "framed", "gallery": "Room 0", "states": "hanging", "word": "two_hooks", "who": "A. Smith"}
     visitor.follow(visitor.post("/house/rule", **keys, **rule))
@@ -231,6 +236,11 @@ def test_a_following_night_takes_it_up(visitor: Visitor, museum: Path) -> None:
     visitor.follow(visitor.said_of("2.3", "/object/decide", kind="accept", why="case is rebuilt"))
     visitor.follow(visitor.said_of("1.1", "/object/measured", **{"m.clearance_m": "40"}))
     page = visitor.get("/house")
+    # What is not offered is not chosen, nor counted.
+    for asked in ("class=dragon", "gallery=Nowhere", "states=mood"):
+        other = visitor.get(f"/house?{asked}").page
+        assert not other.xpath("//select[@name='class' or @name='gallery']/option[@selected and @value != '']")
+        assert "0 objects" not in other.text_content()
     keys = {name: page.hidden("/house/rule", name) for name in ("token", "version")}
     rule = {"class": "framed", "gallery": "Room 0", "states": "hanging", "word": "two_hooks", "who": "A. Smith"}
     visitor.follow(visitor.post("/house/rule", **keys, **rule))
