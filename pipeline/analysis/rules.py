@@ -10,7 +10,8 @@ medium         : material or medium has one of these words; what an object stand
 shape          : all of these measures hold (see `pipeline.analysis.shapes`)
 
 The naming word is the last known word of the object name or, if it knows none, of the title, each read up to its first
-"of", "with", comma and the like: a vase with a bust is a vase, a lantern vase a vase, a cup and saucer a cup.
+"of", "with", comma and the like: a vase with a bust is a vase, a lantern vase a vase, a cup and saucer a cup.  Where
+no object name is recorded, a medium may be one: porcelain charger with terra sigillata.
 """
 
 from __future__ import annotations
@@ -50,6 +51,9 @@ _SUPPORT = re.compile(
     r"\b(?:on|in|with|and|recessed in|auf|sur|su|sobre|op)\s[^,;]{0,40}?\b(?:base|plinth|socle|pedestal)\b"
 )
 """What a medium says of the base."""
+_THINGS = ("vessel", "dish", "seat", "table", "cabinet", "clock", "figurine")
+_NOT_THINGS = ("plate", "glass", "block", "group", "animal", "container", "figure", "tray", "stand")
+"""What a medium calls stuff, or many: silver plate, plate glass, 22 groups of cards."""
 _READ = 10_000
 """Characters of a text that are searched for the name of the thing."""
 PICTURES = ("framed",)
@@ -371,7 +375,7 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
                 return Readings(RuleMatch(rule, f"AAT {min(shared)}"), outright=True)
     kinds = _kinds(item.classification) | _kinds(item.object_name)
     classed, made = _wordless(item, kinds, of)
-    name = _named(item, item.object_name, kinds, of)
+    name = _named(item, item.object_name, kinds, of) if item.object_name else _made_as(item, kinds, of)
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
     title = _named(item, item.title, kinds, of)
@@ -394,6 +398,15 @@ def _wordless(item: Item, kinds: frozenset[str], of: RuleTable) -> tuple[RuleMat
         if rule.fits(item):
             return classed, RuleMatch(rule)
     return classed, None
+
+
+def _made_as(item: Item, kinds: frozenset[str], of: RuleTable) -> RuleMatch | None:
+    """Return the rule of a medium that is the name of a thing: porcelain charger with terra sigillata; no list is."""
+    head = [] if re.search("[,;\\d]", item.medium) else _BREAK.split(fold(item.medium[:_READ]), maxsplit=1)[0].split()
+    found = _named(item, " ".join(head), kinds, of) if 2 <= len(head) <= 4 else None
+    if found is None or found.rule.object_class not in _THINGS or found.word in _NOT_THINGS:
+        return None
+    return found if head[-1] in (found.word, f"{found.word}s") else None
 
 
 def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleMatch | None:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.analysis.rules import RuleMatch, fold, identifiers, read_rules, rule_for, rules, with_own
+from pipeline.analysis.classify import classify
+from pipeline.analysis.rules import RuleMatch, fold, identifiers, read_rules, readings, rule_for, rules, with_own
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection
@@ -69,6 +70,22 @@ def test_the_naming_word(title: str, expected: str) -> None:
 def test_the_object_name_goes_before_the_title() -> None:
     assert decide("vase", "Chair of a king").rule.object_class == "vessel"
     assert decide("unheard-of", "Chair of a king").rule.object_class == "seat"
+
+
+def test_a_medium_may_be_the_name_of_the_thing() -> None:
+    """Works named by a title alone, as museums of modern art have them; neither a list nor stuff is a name."""
+    for medium, expected in {
+        "porcelain charger with terra sigillata": "dish",
+        "Glass bottle with printed label": "vessel",
+        "Wood box with two labels": "cabinet",
+        "Wood chair and candles": "seat",
+    }.items():
+        scene = classify(Item("1", "G", title="Figure II", medium=medium, height_m=0.5, width_m=0.5, depth_m=0.09))
+        assert scene.object_class == expected
+    named = classify(Item("1", "G", object_name="figurine", medium="porcelain bowl", height_m=0.2, width_m=0.1))
+    assert named.object_class == "figurine"
+    for medium in ("wood, glass bottle, feathers", "silver plate", "45 wooden boxes", "bronze", "oil on a wooden box"):
+        assert readings(Item("1", "G", title="Figure II", medium=medium)).name is None
 
 
 def test_an_identifier_decides_before_words_and_says_so() -> None:
