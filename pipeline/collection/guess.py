@@ -16,7 +16,6 @@ from pipeline.collection.guessing.columns import Column, candidates, usual_place
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
 from pipeline.collection.guessing.names import bare, is_side, misspelt, named, unit_in
-from pipeline.collection.guessing.sides import exchange_sides
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -183,8 +182,6 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
             found["image"] = picture
         if "image" in found:
             told.doubts.append(pictures_said(columns, found["image"], found.values()))
-    if not {"height_m", "width_m"} & told.choices.keys():
-        exchange_sides(columns, found, told.doubts)
     usual = None if "gallery" in told.choices else usual_place(columns, found)
     if usual is not None:
         told.questions[:] = [question for question in told.questions if question.key != "gallery"]

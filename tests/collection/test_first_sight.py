@@ -14,6 +14,7 @@ from pipeline.analysis.classify import classify
 from pipeline.collection.dimensions import choose, doubts, parse
 from pipeline.collection.guess import guess
 from pipeline.collection.reading import read_items
+from pipeline.night.importing import proposed
 from pipeline.records import Item, Support
 
 TATE = "accession_number,title,dimensions,width,height,units"
@@ -33,7 +34,7 @@ def tate(path: Path, *, crossed: bool, rows: int = 10) -> Path:
 @pytest.mark.parametrize("crossed", [True, False])
 def test_sides_that_texts_show_to_be_exchanged_are_exchanged_and_said(crossed: bool, tmp_path: Path) -> None:
     path = tate(tmp_path / "tate.csv", crossed=crossed)
-    found = guess(path)
+    found = proposed(str(path)).guess
     items = read_items(path, found.mapping).items
     assert [item.height_m for item in items] == pytest.approx([0.30 + 0.01 * at for at in range(10)])
     assert [item.width_m for item in items] == pytest.approx([0.5] * 10)

@@ -171,7 +171,7 @@ def test_each_kind_of_news_is_told_of_its_object(museum: Path) -> None:
     assert changes.shared == {kind: number for kind, number in expected.items() if kind}
     assert changes.shared["worse"] >= 3
     index = (museum / "reports" / "latest" / "index.html").read_text(encoding="utf-8")
-    assert f'because of the earthquake used: Worse <strong class="num">{changes.shared["worse"]}</strong>' in index
+    assert f'because of the earthquake used: Worse: <strong class="num">{changes.shared["worse"]}</strong>' in index
     assert texts(museum / "reports" / "latest" / "news.html") == []
 
     # Nothing changed: it says so, and no gallery was found anew.
