@@ -18,7 +18,7 @@ from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.masses import mass_of, solid_mass
 from pipeline.analysis.mounts import MountGuess, mount_estimates, mount_of
-from pipeline.analysis.object_class import class_of
+from pipeline.analysis.object_class import TakenClass, class_of
 from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
@@ -306,13 +306,20 @@ def house_effect(
     item: Item, house: HouseRules, rules: RuleTable | None = None, decided: tuple[str, str] | None = None
 ) -> HouseEffect:
     """Return what a museum's house rules come to for an object: see `classify`."""
-    object_class = class_of(item, rules, decided).name
+    return _known_of(item, rules, decided, house)[2]
+
+
+def _known_of(
+    item: Item, rules: RuleTable | None, decided: tuple[str, str] | None, house: HouseRules | None
+) -> tuple[TakenClass, ObjectClass, HouseEffect, AssumedValues]:
+    """Return what an object is taken for, the row of its class, what house rules come to for it, and all tables."""
+    taken = class_of(item, rules, decided)
     values = assumed() if rules is None else rules.values
-    return _said(house, item, values.classes[object_class])
-
-
-def _said(house: HouseRules, item: Item, row: ObjectClass) -> HouseEffect:
-    return house.effect(item, row.name, item.support or row.support, mounts=WHEN_HELD in row.models)
+    row = values.classes[taken.name]
+    if house is None:
+        return taken, row, NO_EFFECT, values
+    said = house.effect(item, row.name, item.support or row.support, mounts=WHEN_HELD in row.models)
+    return taken, row, said, values
 
 
 def _undecided(scene: Scene, values: AssumedValues) -> Scene:
@@ -340,10 +347,7 @@ def classify(
     house   : what the museum states once for many objects; None for nothing
     raises  : KeyError for a decided class that is no row of classes.csv
     """
-    taken = class_of(item, rules, decided)
-    values = assumed() if rules is None else rules.values
-    row = values.classes[taken.name]
-    said = NO_EFFECT if house is None else _said(house, item, row)
+    taken, row, said, values = _known_of(item, rules, decided, house)
     scene = _scene(item, row, taken.words, values, said)
     hanging = said.hanging(item) or scene.hanging
     scene = replace(scene, hanging=hanging, statements=said.statements, chances=taken.chances)
@@ -357,9 +361,7 @@ def furniture_kind(
     house: HouseRules | None = None,
 ) -> Furniture:
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
-    values = assumed() if rules is None else rules.values
-    row = values.classes[class_of(item, rules, decided).name]
-    said = NO_EFFECT if house is None else _said(house, item, row)
+    _, row, said, _ = _known_of(item, rules, decided, house)
     support = said.laid_over(item).support or row.support
     return furniture_of(item, row.name, support, said).furniture
 

@@ -277,17 +277,13 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
     if not chances:
         return None
     first = chances[0]
-    if (
-        is_alone(item)
-        and not read.outright
-        and SHAPES["panel"](item)
-        and PICTURED_PARTS.search(item.dimensions[:_READ])
-    ):
-        return next(one for one in chances if one.object_class in PICTURES)
-    faced = item.height_m and item.width_m and (item.depth_m or 0.0) <= FACE * min(item.height_m, item.width_m)
-    if is_alone(item) and item.title and SHAPES["panel"](item) and not read.outright and (faced or not read.silent):
+    if is_alone(item) and not read.outright and SHAPES["panel"](item):
         flat = next(one for one in chances if one.object_class in PICTURES)
-        return flat if first.object_class in _standing() and flat.probability >= PICTURED else first
+        if PICTURED_PARTS.search(item.dimensions[:_READ]):
+            return flat
+        faced = item.height_m and item.width_m and (item.depth_m or 0.0) <= FACE * min(item.height_m, item.width_m)
+        if item.title and (faced or not read.silent):
+            return flat if first.object_class in _standing() and flat.probability >= PICTURED else first
     if not read.silent or first.probability >= SURE:
         return first
     if item.object_name or item.classification or not (item.material or item.medium):

@@ -402,7 +402,7 @@ def _wordless(item: Item, kinds: frozenset[str], of: RuleTable) -> tuple[RuleMat
 
 def _made_as(item: Item, kinds: frozenset[str], of: RuleTable) -> RuleMatch | None:
     """Return the rule of a medium that is the name of a thing: porcelain charger with terra sigillata; no list is."""
-    head = [] if re.search("[,;\\d]", item.medium) else _BREAK.split(fold(item.medium[:_READ]), maxsplit=1)[0].split()
+    head = [] if re.search(r"[,;\d]", item.medium) else _BREAK.split(fold(item.medium[:_READ]), maxsplit=1)[0].split()
     found = _named(item, " ".join(head), kinds, of) if 2 <= len(head) <= 4 else None
     if found is None or found.rule.object_class not in _THINGS or found.word in _NOT_THINGS:
         return None

@@ -120,7 +120,7 @@ def _lines(found: "Planned", *, dry: bool) -> list[str]:
         lines += ["", f"{len(together) - _LISTED:,} more lines: --json has all, and --out writes them"]
     if plan.away:
         what = counted(len(plan.away), "errand")
-        share = sum(plan.errands[at].avoided for at in plan.away) / plan.loss if plan.loss > 0.0 else 0.0
+        share = plan.share_of(sum(plan.errands[at].avoided for at in plan.away))
         lines += ["", f"To decide with a curator: {what} that take objects from view, {percent(share, 1)} (--removals)"]
     if found.path is not None:
         lines.append(f"{'would write' if dry else 'wrote'} {found.path}")
@@ -143,7 +143,7 @@ def _together(plan: "ErrandPlan") -> list[tuple[str, str]]:
         numbers = [object_.object_number for one in some for object_ in one.objects]
         more = f" and {len(numbers) - _NAMED:,} more" if len(numbers) > _NAMED else ""
         hours, cost = sum(one.hours.value for one in some), sum(one.cost.value for one in some)
-        avoids = percent(sum(one.avoided for one in some) / plan.loss if plan.loss > 0.0 else 0.0, 2)
+        avoids = percent(plan.share_of(sum(one.avoided for one in some)), 2)
         first = "" if one.needs is None else f", after: {plan.errands[one.needs].title}"
         where = f"case {one.case}: " if one.case else ""
         effort = f"{number(hours)} h {one.trade}, cost {priced(number(cost), plan.terms.currency)}; avoids {avoids}"

@@ -91,15 +91,19 @@ class ErrandPlan:
         """Places of the errands that take objects from view and are not chosen."""
         return tuple(at for at, one in enumerate(self.errands) if one.away and at not in self.choice.chosen)
 
+    def share_of(self, avoided: float) -> float:
+        """Return which share of the expected loss a part of it is."""
+        return avoided / self.loss if self.loss > 0.0 else 0.0
+
     @property
     def share(self) -> float:
         """Share of the expected loss that is avoided."""
-        return self.choice.avoided / self.loss if self.loss > 0.0 else 0.0
+        return self.share_of(self.choice.avoided)
 
     @property
     def most(self) -> float:
         """Share of the expected loss that all errands that may be chosen avoid."""
-        return self.curve[-1].avoided / self.loss if self.loss > 0.0 else 0.0
+        return self.share_of(self.curve[-1].avoided)
 
     @property
     def visits(self) -> EffortSpan:

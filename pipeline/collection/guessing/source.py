@@ -81,7 +81,7 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
     if path.is_dir():
         kind = recognised(str(path), b"")
         if kind is not None:
-            return _json_of(path, told) if kind.name == "json" else {"format": kind.name}
+            return _known(kind.name, path, told)
         raise CollectionError(
             f"{path}: a folder without CSV or JSON files; name the museum's export itself, or the folder with its "
             "tables"
@@ -94,7 +94,7 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         raise CollectionError(f"{path.name}: packed by gzip, and damaged ({problem}); export it again") from problem
     kind = recognised(str(path), head)
     if kind is not None:
-        return _json_of(path, told) if kind.name == "json" else {"format": kind.name}
+        return _known(kind.name, path, told)
     if head.lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n\x00").startswith(b"<"):
         raise CollectionError(
             f"{path.name}: XML of a kind that Kouros does not know; it knows LIDO, Adlib XML and MuseumPlus RIA. "
@@ -122,8 +122,10 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
     return source
 
 
-def _json_of(path: Path, told: GuessNotes) -> dict[str, Any]:
-    """Return how plain JSON is read: where its first value lists the objects."""
+def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
+    """Return how a source of a known kind is read; of plain JSON, where its first value lists the objects."""
+    if kind != "json":
+        return {"format": kind}
     file = json_files(path, deep=True)[0] if path.is_dir() else path
     try:
         with file.open("rb") as packed, closing(unpacked(packed, file.name, STANDARD.bytes)) as binary:

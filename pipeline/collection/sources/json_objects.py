@@ -19,7 +19,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import Request, SourceSettings
 from pipeline.collection.sources.json_records import JsonSource, Values, files_of
 from pipeline.collection.sources.measurement_terms import kind_of
-from pipeline.collection.sources.measurements import MEASURED, MeasuredSettings, Measurements, joined
+from pipeline.collection.sources.measurements import NUMBER, OF_MEASUREMENTS, MeasuredSettings, Measurements, joined
 from pipeline.collection.sources.rows import Row, as_text
 
 MOST_COLUMNS = 2000
@@ -39,9 +39,6 @@ _PAGES = (
 _WRAPPERS = ("artObject", "_source", "attributes", "object", "record", "item", "node", "fields", "document", "objekt")
 """Names of one object on a page of its own, or of what a search engine found."""
 
-_NUMBER = re.compile(r"[+-]?\d+(?:[.,]\d+)?", re.ASCII)
-_OTHER = "other_measurements"
-_OF_LISTS = (*MEASURED, _OTHER)
 _SCALARS = (str, int, float, bool)
 
 
@@ -214,18 +211,17 @@ def flat(record: Mapping[str, Any], unit: str | None = None) -> tuple[dict[str, 
             put(path, as_text(value))
 
     def _measured(path: str, value: list[Any]) -> bool:
-        said = [_measurement(one) for one in value]
-        if not any(one is not None and kind_of(one[0]) for one in said) or None in said:
+        said = [one for one in map(_measurement, value) if one is not None]
+        if len(said) < len(value) or not any(kind_of(one[0]) for one in said):
             return False
         measured = Measurements(unit)
         for one in said:
-            if one is not None:
-                measured.add(*one)
+            measured.add(*one)
         for name, text in measured.cells().items():
             put(f"{path}.{name}", text)
-        for at, fault in measured.faults(_OF_LISTS).items():
-            faults[f"{path}.{_OF_LISTS[at]}"] = fault
-            cells.setdefault(f"{path}.{_OF_LISTS[at]}", "")
+        for at, fault in measured.faults(OF_MEASUREMENTS).items():
+            faults[f"{path}.{OF_MEASUREMENTS[at]}"] = fault
+            cells.setdefault(f"{path}.{OF_MEASUREMENTS[at]}", "")
         return True
 
     take("", record)
@@ -236,7 +232,7 @@ def _measurement(value: Any) -> tuple[str, str, str, str] | None:
     """Return kind, number, unit and part of what one entry of a list says; None where it says no measurement."""
     if not isinstance(value, dict):
         return None
-    number = next((name for name in _VALUES if _NUMBER.fullmatch(_text(value.get(name)).strip())), None)
+    number = next((name for name in _VALUES if NUMBER.fullmatch(_text(value.get(name)).strip())), None)
     kind = next((name for name in _KINDS if name != number and kind_of(_text(value.get(name)))), None)
     if kind is None:
         kind = next((name for name in _KINDS if name != number and _text(value.get(name))), None)

@@ -159,12 +159,16 @@ class JsonSource(FileSource):
                 f"{path}: {size:,} bytes, more than {request.limits.bytes:,}; export fewer objects, or raise [limits] "
                 "megabytes"
             )
-        digest = hashlib.sha256()
+        sums: dict[str, bytes] = {}
 
         def values() -> Iterator[tuple[int, Any]]:
-            return _values_of(path, files, digest, exact=self.exact)
+            return _values_of(path, files, sums, exact=self.exact)
 
-        yield Opened(path.name, self.records(values, path.name, request), digest.hexdigest)
+        def digest() -> str:
+            whole = b"".join(f"{name}\0".encode("utf-8", "surrogatepass") + one for name, one in sums.items())
+            return hashlib.sha256(whole).hexdigest()
+
+        yield Opened(path.name, self.records(values, path.name, request), digest)
 
     def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
         """Yield the header and the objects.
@@ -187,15 +191,17 @@ class JsonSource(FileSource):
         return self.records(values, file, request)
 
 
-def _values_of(folder: Path, files: Sequence[Path], digest: Any, *, exact: bool) -> Iterator[tuple[int, Any]]:
-    """Yield the values of files; what they are told from goes into the digest."""
+def _values_of(
+    folder: Path, files: Sequence[Path], sums: dict[str, bytes], *, exact: bool
+) -> Iterator[tuple[int, Any]]:
+    """Yield the values of files; the checksum of what each is told from is noted once, however often they are read."""
     for path in files:
         name = path.relative_to(folder).as_posix()
         try:
             with path.open("rb") as binary:
-                digest.update(f"{name}\0".encode("utf-8", "surrogatepass"))
-                digest.update(hashlib.file_digest(binary, "sha256").digest())
-                binary.seek(0)
+                if name not in sums:
+                    sums[name] = hashlib.file_digest(binary, "sha256").digest()
+                    binary.seek(0)
                 for number, value in read_values(binary, name, exact=exact):
                     line = Line(number)
                     line.file = name

@@ -9,10 +9,10 @@ from typing import NamedTuple
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import LongForm
 from pipeline.collection.sources.measurement_terms import kind_of
-from pipeline.collection.sources.measurements import MEASURED, Measurements
+from pipeline.collection.sources.measurements import OF_MEASUREMENTS, OTHER, Measurements
 from pipeline.collection.sources.rows import Row
 
-COLUMNS = (*MEASURED, "other_measurements")
+COLUMNS = OF_MEASUREMENTS
 """What takes the place of the columns of type, value, unit and part."""
 
 _Fault = tuple[str, str]
@@ -142,6 +142,6 @@ def _apart(row: Row, places: tuple[int, int, int | None, int | None], separator:
 
 def _measure(found: _Gathered, said: _LongCell) -> None:
     if said.fault is not None:
-        found.measured.refuse(kind_of(said.kind) or "other_measurements", *said.fault)
+        found.measured.refuse(kind_of(said.kind) or OTHER, *said.fault)
         return
     found.measured.add(said.kind.strip(), said.value, said.unit, said.part)

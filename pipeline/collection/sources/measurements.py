@@ -17,6 +17,11 @@ from pipeline.quantities import LENGTHS, MASSES
 MEASURED = tuple(f"{part} {kind}".strip() for part in PARTS for kind in KINDS)
 """Columns of measurements: "height", "width", ... "base height", ... "frame weight"."""
 
+OTHER = "other_measurements"
+"""Column of those of unknown kinds or parts, and of second values."""
+
+OF_MEASUREMENTS = (*MEASURED, OTHER)
+
 COLUMNS = (
     "object_number",
     "record_id",
@@ -32,14 +37,13 @@ COLUMNS = (
     "image",
     "image_credit",
     "dimensions",
-    *MEASURED,
-    "other_measurements",
+    *OF_MEASUREMENTS,
 )
 """The header of formats whose records are objects with measurements (Adlib XML, MuseumPlus RIA XML, Linked Art)."""
 SAME = 0.01
 """Relative difference up to which two statements of one measurement agree: what is rounded when inches become cm."""
 
-_NUMBER = re.compile(r"[+-]?\d+(?:[.,]\d+)?", re.ASCII)
+NUMBER = re.compile(r"[+-]?\d+(?:[.,]\d+)?", re.ASCII)
 # Three digits behind a comma may be thousands: these are left as they are, to be doubted.
 _COMMA = re.compile(r"[+-]?\d+,(?:\d{1,2}|\d{4,})", re.ASCII)
 _TRAILING = re.compile(r"(\.\d*?)0+$")
@@ -145,7 +149,7 @@ class Measurements:
                 if free is not None:
                     found[free] = found[length]
         if self._others:
-            found["other_measurements"] = "; ".join(self._others)
+            found[OTHER] = "; ".join(self._others)
         return found
 
     def faults(self, columns: Iterable[str]) -> Mapping[int, tuple[str, str]]:
@@ -183,16 +187,16 @@ def joined(texts: Iterable[str]) -> str:
 
 def _is_zero(value: str) -> bool:
     """Whether it is a nought, which databases write where nothing was measured."""
-    return bool(_NUMBER.fullmatch(value)) and float(value.replace(",", ".")) == 0.0
+    return bool(NUMBER.fullmatch(value)) and float(value.replace(",", ".")) == 0.0
 
 
 def _short(value: str) -> str:
     """Return a decimal number with a point, and without the noughts that a database adds: "24.1000000000" as "24.1"."""
     if _COMMA.fullmatch(value):
         value = value.replace(",", ".")
-    return _TRAILING.sub(r"\1", value).rstrip(".") if _NUMBER.fullmatch(value) else value
+    return _TRAILING.sub(r"\1", value).rstrip(".") if NUMBER.fullmatch(value) else value
 
 
 def _si(value: str, unit: str) -> float | None:
     factor = LENGTHS.get(unit, MASSES.get(unit))
-    return float(value.replace(",", ".")) * factor if factor and _NUMBER.fullmatch(value) else None
+    return float(value.replace(",", ".")) * factor if factor and NUMBER.fullmatch(value) else None

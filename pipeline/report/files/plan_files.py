@@ -244,7 +244,7 @@ def _listed(sheet: Any, plan: ErrandPlan, places: Sequence[int]) -> None:
     sheet.append([name for name, _ in _HEADS])
     for at in places:
         one, row = plan.errands[at], numbered[at]
-        share = one.avoided / plan.loss if plan.loss > 0.0 else 0.0
+        share = plan.share_of(one.avoided)
         needs = numbered.get(-1 if one.needs is None else one.needs)
         texts = {
             2: one.gallery,

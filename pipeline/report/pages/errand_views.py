@@ -165,7 +165,7 @@ def plan_view(plan: ErrandPlan, *, linked: bool = True, sentences: bool = True) 
         total=len(plan.errands),
         away=tuple(views[at] for at in away[:DOUBTFUL]),
         away_hidden=max(0, len(away) - DOUBTFUL),
-        away_avoids=_share(_ratio(sum(plan.errands[at].avoided for at in away), plan)),
+        away_avoids=_share(plan.share_of(sum(plan.errands[at].avoided for at in away))),
         curve=_curve(plan),
         priced=bool(plan.terms.currency),
     )
@@ -234,7 +234,7 @@ def _errand(plan: ErrandPlan, at: int, *, linked: bool, sentences: bool) -> Erra
         hours=number(one.hours.value),
         hours_span=_("%(low)s to %(high)s") % {"low": number(one.hours.low), "high": number(one.hours.high)},
         cost=priced(number(one.cost.value), plan.terms.currency),
-        avoids="" if one.prepares else _share(_ratio(one.avoided, plan)),
+        avoids="" if one.prepares else _share(plan.share_of(one.avoided)),
         first="" if one.needs is None else said(clean(plan.errands[one.needs].title)),
     )
 
@@ -250,7 +250,7 @@ def _begun(plan: ErrandPlan, places: Sequence[int], *, linked: bool) -> BeginVie
         len(objects) - len(objects[:FEW]),
         _TRADES[some[0].trade](),
         number(sum(one.hours.value for one in some)),
-        _share(_ratio(sum(one.avoided for one in some), plan)),
+        _share(plan.share_of(sum(one.avoided for one in some))),
         "" if some[0].needs is None else said(clean(plan.errands[some[0].needs].title)),
     )
 
@@ -264,10 +264,6 @@ def _brief(sentence: str) -> str:
     # That its furniture is fastened first is an errand of its own.
     text = sentence.removeprefix(ANCHORED).strip() or sentence
     return _CLAUSE.split(text, maxsplit=1)[0].rstrip(".") + "."
-
-
-def _ratio(avoided: float, plan: ErrandPlan) -> float:
-    return avoided / plan.loss if plan.loss > 0.0 else 0.0
 
 
 def _share(share: float) -> str:
@@ -361,7 +357,7 @@ def _curve(plan: ErrandPlan) -> Markup:
     # The whole curve would press a small plan against its axis.
     reach = max(10.0 * hours.value, 1.1 * hours.high, 2.0 * (limit or 0.0)) if plan.chosen else whole
     most = max(min(whole, reach), hours.high if plan.terms.limits.open else 0.0)
-    corners = [(corner.hours, 1.0 - _ratio(corner.avoided, plan)) for corner in plan.curve]
+    corners = [(corner.hours, 1.0 - plan.share_of(corner.avoided)) for corner in plan.curve]
     return effort_curve(corners, (hours.value, hours.low, hours.high), 1.0 - plan.share, limit, most)
 
 
