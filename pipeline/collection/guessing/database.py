@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from pipeline.collection.guessing.columns import NUMBER, Column, candidates, columns_of
 from pipeline.collection.guessing.long_rows import VALUES
-from pipeline.collection.guessing.names import named, of_table, plain, same_stem
+from pipeline.collection.guessing.names import CALLED, named, of_table, plain, same_stem
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.measurement_terms import kind_of, part_of, unit_of
 from pipeline.collection.sources.schema import DatabaseTable
@@ -49,20 +49,11 @@ _CURRENT = frozenset(
 )
 _USUAL = frozenset({"home", "normal", "usual", "permanent", "default"})
 _FLAGS = frozenset(f"is {word}" for word in _CURRENT) | _CURRENT | {"active", "iscurrent", "current location"}
-_NAMES = (
-    "name",
-    "bezeichnung",
-    "nom",
-    "nome",
-    "nombre",
-    "naam",
-    "nume",
-    "label",
-    "description",
-    "term",
-    "title",
-    "code",
-)
+_NAMES = (*CALLED, "bezeichnung", "label", "description", "term", "title", "code")
+_SIZES = frozenset({"height_m", "width_m", "depth_m", "diameter_m", "length_m", "mass_kg", "dimensions"})
+_PLACES = ("place", "places", "spot", "position", "standplaats", "lieu", "luogo", "lugar", "yer", "miejsce")
+"""Names of tables of places that are no names of a column of places: a "place" of an object is where it is from."""
+
 _ENDS = frozenset(
     {
         *("date to", "to date", "end date", "enddate", "date end", "until", "removed", "date out", "dateout"),
@@ -88,7 +79,7 @@ class Joined:
 
 
 def object_tables(tables: Sequence[DatabaseTable]) -> list[DatabaseTable]:
-    """Return the tables that may hold the objects, the likeliest first: those that name object numbers.
+    """Return the tables that may hold the objects, the likeliest first: those that name object numbers, or else sizes.
 
     Parameters
     ----------
@@ -98,7 +89,7 @@ def object_tables(tables: Sequence[DatabaseTable]) -> list[DatabaseTable]:
     Returns
     -------
     list of DatabaseTable
-        Empty where none names them.
+        Empty where none names either.
     """
 
     def likeness(table: DatabaseTable) -> tuple[bool, bool, int, int]:
@@ -110,7 +101,8 @@ def object_tables(tables: Sequence[DatabaseTable]) -> list[DatabaseTable]:
 
     able = [table for table in tables if "object_number" in _named(table)]
     own = [table for table in able if not _is_internal(_named(table)["object_number"])]
-    return sorted(own or able, key=likeness, reverse=True)
+    sized = [table for table in tables if len(_SIZES & set(_named(table))) > 1]
+    return sorted(own or able or sized, key=likeness, reverse=True)
 
 
 def joined(url: str, tables: Sequence[DatabaseTable], objects: DatabaseTable) -> Joined | None:
@@ -204,7 +196,8 @@ class _Joiner:
 
         self._from: Any = self._clause(self._objects)
         for column in self._objects.columns:
-            if named(column) is not None or column in self._objects.key:
+            # What no name tells, contents may; a number of another table tells nothing.
+            if column in self._objects.key or not self._is_reference(self._objects, column):
                 self._select(self._objects, column, column)
         fields = _named(self._objects)
         if "gallery" not in fields:
@@ -337,7 +330,7 @@ class _Joiner:
             if way is None or other is self._objects:
                 continue
             own = _best(other.columns, "gallery")
-            if of_table(other.name, "gallery"):
+            if of_table(other.name, "gallery") or any(same_stem(name, other.name) for name in _PLACES):
                 own = self._called(other) or own or self._name_of(other)
             if own is not None:
                 words = set(plain(way[0]).split())
@@ -359,7 +352,10 @@ class _Joiner:
             number = _named(other).get("object_number")
             if other is self._objects or other.shown in self._clauses or (number and not _is_internal(number)):
                 continue
-            column = next((c for c in other.columns if _field(c) == field and c not in other.key), None)
+            # The name of an artist or a donor is no title.
+            column = next(
+                (c for c in other.columns if _field(c) == field and c not in other.key and plain(c) not in CALLED), None
+            )
             if column is None and of_table(other.name, field):
                 column = self._name_of(other)
             if column is None or self._is_reference(other, column):

@@ -117,6 +117,9 @@ _HOLDING = frozenset(
 )
 """Names within a name that say only that its value follows: "object_names.name"."""
 
+CALLED = ("name", "nom", "nome", "nombre", "naam", "nume")
+"""What a thing is called, where nothing else stands in the head: of an object it is the title."""
+
 _USUAL = frozenset({"home", "normal", "usual", "default", "permanent", "stamm", "habituel", "abituale", "habitual"})
 """Words of a place where an object mostly is: used where no column tells where it is now."""
 
@@ -245,6 +248,8 @@ def named(name: str) -> ColumnMeaning | None:
         found = _singular_names().get(_singular(form))
         if found is not None:
             return found
+    if plain(name) in CALLED:
+        return ColumnMeaning("title", _WEAK)
     return _within(name)
 
 
@@ -272,8 +277,15 @@ def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
 
 
 def same_stem(word: str, table: str) -> bool:
-    """Whether a word is the name of a table, but for its ending: "objekt" of "Objekte", "category" of "categories"."""
-    name = plain(table).replace(" ", "").removeprefix("tbl")
+    """Whether a word is the name of a table, but for its ending and what stands before it.
+
+    "objekt" of "tblObjekte", "category" of "categories", "room" of "collection_rooms".
+    """
+    words = plain(table).split()
+    return any(_same("".join(words[at:]).removeprefix("tbl"), word) for at in range(len(words)) if len(words) - at <= 3)
+
+
+def _same(name: str, word: str) -> bool:
     short, long = sorted((word.removesuffix("y"), name.removesuffix("ies")), key=len)
     return len(short) >= 3 and long.startswith(short) and len(long) - len(short) <= 2
 
@@ -332,7 +344,8 @@ def _forms(name: str) -> Iterator[str]:
 def _within(name: str) -> ColumnMeaning | None:
     """Return what the last or the first words of a name say: "Akt. Standort"; of numbers, places and materials only."""
     words = plain(unit_in(name)[0]).split()
-    if _FORMER & set(words) or words[-1:] == ["id"]:
+    if _FORMER & set(words) or words[-1:] == ["id"] or words[:1] == ["is"] or words[:1] == ["has"]:
+        # "is_gallery" is answered by yes or no.
         return None
     usual = bool(_USUAL & set(words))
     for many in range(min(len(words) - 1, 3), 0, -1):
