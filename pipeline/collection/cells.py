@@ -16,7 +16,7 @@ from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.mapping import WRITTEN, ColumnMap
 from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.record import CHOICES, plausible, units_of
-from pipeline.collection.sources.rows import as_text
+from pipeline.collection.sources.rows import Figure, as_text
 from pipeline.errors import InputError
 from pipeline.quantities import LENGTHS
 from pipeline.records import ContactPolygon, Origin, Problem, Provenance
@@ -74,6 +74,7 @@ class Cells:
         float or None
             In SI; None where none is recorded or none can be accepted (then with a problem).
         """
+        texts = [self._local(text) for text in texts]
         if column.units:
             return self._sum(name, column, texts)
         text = texts[0].strip(_SPACE)
@@ -337,6 +338,9 @@ class Cells:
             return None
         self._note(name, column, f"{_show(text)} is infinite", "measure it, or leave the cell empty")
         return None
+
+    def _local(self, text: str) -> str:
+        return text.replace(".", self.decimal) if isinstance(text, Figure) else text
 
     def _plain(self, text: str) -> str:
         # A dot in a file with decimal commas separates thousands or is a slip: both are refused, not guessed.

@@ -11,11 +11,12 @@ import tomlkit
 
 from pipeline.collection.display_words import flag_of, says_away, says_flags
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.guessing.columns import Column
-from pipeline.collection.guessing.names import bare, unit_in
+from pipeline.collection.guessing.columns import NUMBER, Column
+from pipeline.collection.guessing.names import bare, named, unit_in
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
+from pipeline.collection.sources.rows import Figure
 
 FEWEST = 5
 """Numbers in eighths or sixteenths from which a column is taken to be in inches."""
@@ -68,9 +69,15 @@ def decimal_of(columns: Sequence[Column]) -> str:
     """Return the decimal mark that most numbers have, of cells and of dimension texts."""
     commas = points = 0
     for column in columns:
-        for number in column.numbers:
-            commas += "," in number
-            points += "." in number
+        what = named(column.name)
+        if what is not None and what.field == "object_number":
+            # 1990.4 is the fourth object of that year.
+            continue
+        for number in column.values:
+            # What the source itself holds as a number says nothing of how people write one.
+            if not isinstance(number, Figure) and NUMBER.fullmatch(number.strip()):
+                commas += "," in number
+                points += "." in number
         if not column.numeric and column.dimensional > 0.2:
             for text in column.filled:
                 commas += len(_COMMA.findall(text))

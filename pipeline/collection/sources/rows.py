@@ -13,6 +13,12 @@ NO_FAULTS: Mapping[int, tuple[str, str]] = MappingProxyType({})
 """The faults of cells of a row that has none."""
 
 
+class Figure(str):
+    """The text of a cell that its source holds as a number: its point is the decimal one, whatever texts have."""
+
+    __slots__ = ()
+
+
 class Row(NamedTuple):
     """A row as it stands in its source: its number, its first line, its cells as texts.
 
@@ -39,6 +45,8 @@ class Row(NamedTuple):
 
 def as_text(value: object) -> str:
     """Return the text of a typed value (of a spreadsheet or a database): the same for the same number in every source.
+
+    That of a number with a fraction is a `Figure`.
 
     None is an empty text; numbers are written with all their digits and no more: 79.0 as 79, decimals exactly; flags
     are true and false; dates are ISO 8601.
@@ -71,12 +79,12 @@ def as_text(value: object) -> str:
     if isinstance(value, float):
         if not isfinite(value):
             raise ValueError(f"{value} is no number that was measured")
-        return str(int(value)) if value.is_integer() and abs(value) < 1e16 else repr(value)
+        return str(int(value)) if value.is_integer() and abs(value) < 1e16 else Figure(repr(value))
     if isinstance(value, Decimal):
         if not value.is_finite():
             raise ValueError(f"{value} is no number that was measured")
         plain = value.normalize()
-        return format(plain, "f") if -20 < plain.adjusted() < 20 else str(plain)
+        return Figure(format(plain, "f") if -20 < plain.adjusted() < 20 else str(plain))
     if isinstance(value, datetime | date | time):
         return value.isoformat()
     raise TypeError(f"a value of the kind {type(value).__name__}")
