@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import fsum
 
 from pipeline.analysis.stakes import expected_loss, to_check
@@ -153,12 +153,12 @@ class Errand:
     @cached_property
     def loss(self) -> float:
         """What is expected to be lost of its objects without it; 0 where it only prepares."""
-        return 0.0 if self.prepares else fsum(one.loss for one in self.objects)
+        return 0.0 if self.prepares else fsum([one.loss for one in self.objects])
 
     @cached_property
     def left(self) -> float:
         """What of this is expected to be lost with it."""
-        return 0.0 if self.prepares else fsum(one.left for one in self.objects)
+        return 0.0 if self.prepares else fsum([one.left for one in self.objects])
 
     @property
     def avoided(self) -> float:
@@ -198,23 +198,30 @@ def errands_of(found: Iterable[Advised], efforts: Efforts, order: Mapping[str, i
         if one.anchored:
             fastened.setdefault((one.gallery, one.case, efforts.anchor, False, alone, False), []).append(one)
     keys = [*groups, *(key for key in fastened if key not in groups)]
-    members = {
-        key: sorted(groups.get(key) or fastened[key], key=lambda one: sorting_key(one.object_number)) for key in keys
-    }
+    # Galleries, cases and measures are few where objects are many.
+    sorting = cache(sorting_key)
+
+    @cache
+    def taken(measure: str, objects: int) -> tuple[str, EffortSpan, EffortSpan]:
+        row = efforts.of(measure)
+        return row.trade, row.hours_of(objects), row.cost_of(objects)
+
+    members = {key: _in_order(groups.get(key) or fastened[key]) for key in keys}
 
     def walked(key: _Key) -> tuple[int, str, str, str, bool, str, str, bool]:
         gallery, case, measure, anchored, alone, check = key
         # What is in no case is by itself; its furniture is fastened before what is done on it.
         first = sorting_key(members[key][0].object_number)
-        place = order.get(gallery, len(order)), sorting_key(gallery)
-        return *place, sorting_key(case), sorting_key(alone), anchored, first, measure, check
+        place = order.get(gallery, len(order)), sorting(gallery)
+        return *place, sorting(case), sorting_key(alone), anchored, first, measure, check
 
     keys.sort(key=walked)
     at = {key: place for place, key in enumerate(keys)}
     out = []
     for key in keys:
         gallery, case, measure, anchored, alone, check = key
-        those, row = members[key], efforts.of(measure)
+        those = members[key]
+        trade, hours, cost = taken(measure, len(those))
         prepares = key not in groups
         title = efforts.titles.get(measure, measure) if prepares else those[0].measure_title
         out.append(
@@ -223,13 +230,17 @@ def errands_of(found: Iterable[Advised], efforts: Efforts, order: Mapping[str, i
                 case,
                 measure,
                 title,
-                row.trade,
+                trade,
                 tuple(those),
-                row.hours_of(len(those)),
-                row.cost_of(len(those)),
+                hours,
+                cost,
                 needs=at[gallery, case, efforts.anchor, False, alone, False] if anchored else None,
                 prepares=prepares,
                 away=measure in efforts.away,
             )
         )
     return tuple(out)
+
+
+def _in_order(those: list[Advised]) -> list[Advised]:
+    return sorted(those, key=lambda one: sorting_key(one.object_number)) if len(those) > 1 else those
