@@ -16,7 +16,7 @@ from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.mapping import WRITTEN, ColumnMap
 from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.record import CHOICES, plausible, units_of
-from pipeline.collection.sources.rows import Figure, as_text
+from pipeline.collection.sources.rows import TypedNumber, as_text
 from pipeline.errors import InputError
 from pipeline.quantities import LENGTHS
 from pipeline.records import ContactPolygon, Origin, Problem, Provenance
@@ -340,7 +340,7 @@ class Cells:
         return None
 
     def _local(self, text: str) -> str:
-        return text.replace(".", self.decimal) if isinstance(text, Figure) else text
+        return text.replace(".", self.decimal) if isinstance(text, TypedNumber) else text
 
     def _plain(self, text: str) -> str:
         # A dot in a file with decimal commas separates thousands or is a slip: both are refused, not guessed.

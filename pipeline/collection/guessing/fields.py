@@ -16,7 +16,7 @@ from pipeline.collection.guessing.names import bare, named, unit_in
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
-from pipeline.collection.sources.rows import Figure
+from pipeline.collection.sources.rows import TypedNumber
 
 FEWEST = 5
 """Numbers in eighths or sixteenths from which a column is taken to be in inches."""
@@ -75,7 +75,7 @@ def decimal_of(columns: Sequence[Column]) -> str:
             continue
         for number in column.values:
             # What the source itself holds as a number says nothing of how people write one.
-            if not isinstance(number, Figure) and NUMBER.fullmatch(number.strip()):
+            if not isinstance(number, TypedNumber) and NUMBER.fullmatch(number.strip()):
                 commas += "," in number
                 points += "." in number
         if not column.numeric and column.dimensional > 0.2:

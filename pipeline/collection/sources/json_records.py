@@ -17,7 +17,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Opened, Request
 from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.files import unreadable
-from pipeline.collection.sources.rows import Figure, Row
+from pipeline.collection.sources.rows import Row, TypedNumber
 
 FILES = ("*.json", "*.jsonld", "*.jsonl", "*.ndjson")
 """What counts in a folder."""
@@ -42,7 +42,7 @@ def _all_said(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return out
 
 
-_EXACT = json.JSONDecoder(parse_float=Figure, parse_int=str, parse_constant=str, object_pairs_hook=_all_said)
+_EXACT = json.JSONDecoder(parse_float=TypedNumber, parse_int=str, parse_constant=str, object_pairs_hook=_all_said)
 _SPACE = re.compile(r"[\s\ufeff]*")
 
 

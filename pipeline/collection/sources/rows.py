@@ -13,7 +13,7 @@ NO_FAULTS: Mapping[int, tuple[str, str]] = MappingProxyType({})
 """The faults of cells of a row that has none."""
 
 
-class Figure(str):
+class TypedNumber(str):
     """The text of a cell that its source holds as a number: its point is the decimal one, whatever texts have."""
 
     __slots__ = ()
@@ -46,7 +46,7 @@ class Row(NamedTuple):
 def as_text(value: object) -> str:
     """Return the text of a typed value (of a spreadsheet or a database): the same for the same number in every source.
 
-    That of a number with a fraction is a `Figure`.
+    That of a number with a fraction is a `TypedNumber`.
 
     None is an empty text; numbers are written with all their digits and no more: 79.0 as 79, decimals exactly; flags
     are true and false; dates are ISO 8601.
@@ -79,12 +79,12 @@ def as_text(value: object) -> str:
     if isinstance(value, float):
         if not isfinite(value):
             raise ValueError(f"{value} is no number that was measured")
-        return str(int(value)) if value.is_integer() and abs(value) < 1e16 else Figure(repr(value))
+        return str(int(value)) if value.is_integer() and abs(value) < 1e16 else TypedNumber(repr(value))
     if isinstance(value, Decimal):
         if not value.is_finite():
             raise ValueError(f"{value} is no number that was measured")
         plain = value.normalize()
-        return Figure(format(plain, "f") if -20 < plain.adjusted() < 20 else str(plain))
+        return TypedNumber(format(plain, "f") if -20 < plain.adjusted() < 20 else str(plain))
     if isinstance(value, datetime | date | time):
         return value.isoformat()
     raise TypeError(f"a value of the kind {type(value).__name__}")

@@ -21,7 +21,7 @@ from pipeline.collection.sources.base import FileSource, Name, Request
 from pipeline.collection.sources.delimited import HeadedSettings
 from pipeline.collection.sources.files import stream_of
 from pipeline.collection.sources.heads import joined_heads
-from pipeline.collection.sources.rows import Figure, Row, as_text
+from pipeline.collection.sources.rows import Row, TypedNumber, as_text
 from pipeline.collection.sources.shown import is_moment, shown
 from pipeline.collection.sources.workbook import (
     COLUMN_LIMIT,
@@ -388,7 +388,7 @@ def _take(
     elif is_key is not None and isinstance(value, int | float) and not isinstance(value, bool):
         seen = shown(value, cell.number_format or "") if isfinite(value) else None
         if seen is not None:
-            cells[place] = Figure(seen)
+            cells[place] = TypedNumber(seen)
         elif is_key:
             told = f"holds {str(value)[:40]} in the format {str(cell.number_format)[:40]!r}, which shows another text"
             faults[place] = (told, _TYPE_AGAIN)
