@@ -26,6 +26,9 @@ from pipeline.resources import replacing
 PLAN_FILES = ("plan.html", "plan.csv")
 """The page of a report, and the list of all errands beside it."""
 
+PLANNED_FROM = ("recommendations.parquet", "objects.parquet")
+"""The exports of a report that a plan is made of."""
+
 PLAN_COLUMNS = (
     "errand", "needs", "do", "place", "gallery", "case", "objects", "measure", "title", "sentence", "trade",
     "hours", "hours_low", "hours_high", "cost", "cost_low", "cost_high", "loss", "avoided", "takes_from_view", "page",
@@ -80,11 +83,11 @@ def gathered_from(folder: Path) -> Gathered:
     """
     advice = {
         (row["object_number"], row["gallery"], row["level"]): row
-        for row in _rows(folder / "recommendations.parquet", _ADVICE)
+        for row in _rows(folder / PLANNED_FROM[0], _ADVICE)
         if not row["settled"]
     }
     out = Gathered()
-    for row in _rows(folder / "objects.parquet", _OBJECT):
+    for row in _rows(folder / PLANNED_FROM[1], _OBJECT):
         if not row["on_display"]:
             continue
         loss, chance = row["expected_loss"], row["probability"]

@@ -7,7 +7,7 @@ checksums were compared; the exports of the whole are put together from the part
 import os
 import shutil
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, suppress
 from dataclasses import replace
 from hashlib import sha256
@@ -34,7 +34,7 @@ from pipeline.report.files.manifest import (
 )
 from pipeline.report.files.object_list import LISTED, OBJECTS, SHOWN, is_list_file, listed_pages
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
-from pipeline.report.files.plan_files import PLAN_FILES, gathered_from, write_plan_table
+from pipeline.report.files.plan_files import PLAN_FILES, PLANNED_FROM, gathered_from, write_plan_table
 from pipeline.report.files.ranks import KEYS, ranks_of
 from pipeline.report.files.turning import turned, turns
 from pipeline.report.files.walk_sheet import sheet_file
@@ -211,8 +211,13 @@ class ReportWriter:
             Where two galleries' files would have one name.
         """
         self._turn()
-        self._export(head)
-        plan = "" if terms is None else self._plan(head, terms)
+        # Copying, checksums and compression leave this thread to work.
+        with ThreadPoolExecutor() as pool:
+            made = self._exporting(pool)
+            self._list(head)
+            plan = "" if terms is None else self._plan(head, terms, made)
+            self._files |= {name: one.result() for name, one in made.items()}
+        self._workbook(head)
         for name, text in [*self._shared(head, tally, changes, links, plan=plan), *(beside or {}).items()]:
             self._write(name, text.encode())
         curves = class_curves(tally)
@@ -253,34 +258,40 @@ class ReportWriter:
             self._write(page.entry.page.file, content)
             self._pages[at] = replace(page, turn=told)
 
-    def _export(self, head: RunRecord) -> None:
-        """Write the exports of the whole report, or take those of the earlier one if it has the same pages."""
-        same = [page.key for page in self._pages] == self._previous.pages
-        parts = [part_files(page.entry.page.file) for page in self._pages]
-        taken = {name for name in (*EXPORTS, WORKBOOK) if same and self._previous.has(name)}
+    @property
+    def _same(self) -> bool:
+        """Whether the earlier report has the same pages."""
+        return [page.key for page in self._pages] == self._previous.pages
+
+    def _parts(self, export: str) -> list[Path]:
+        at = PARTS_OF_PAGE.index(export)
+        return [self._partial / part_files(page.entry.page.file)[at] for page in self._pages]
+
+    def _exporting(self, pool: ThreadPoolExecutor) -> dict[str, Future[FileSum]]:
+        """Begin to write the exports of the whole report; take those of the earlier one if it has the same pages."""
+        taken = {name for name in EXPORTS if self._same and self._previous.has(name)}
         self._link(*taken)
-        wanted = {name: [self._partial / part[at] for part in parts] for at, name in enumerate(PARTS_OF_PAGE)}
-        keys = wanted.pop(KEYS)
-        self._list(head, wanted.pop(LISTED), same=same)
-        left = wanted.keys() - taken
-        ranks = ranks_of(keys) if any(map(ranked, left)) else None
-        # Copying, checksums and compression leave the other files' threads to work.
-        with ThreadPoolExecutor() as pool:
-            made = {
-                name: pool.submit(concatenate, self._partial / name, wanted[name], ranks if ranked(name) else None)
-                for name in left
-            }
-        self._files |= {name: one.result() for name, one in made.items()}
-        if WORKBOOK not in taken and write_exports_workbook(self._partial, head.started):
+        left = [name for name in EXPORTS if name not in taken]
+        ranks = ranks_of(self._parts(KEYS)) if any(map(ranked, left)) else None
+        # What the plan is made of comes first.
+        return {
+            name: pool.submit(concatenate, self._partial / name, self._parts(name), ranks if ranked(name) else None)
+            for name in sorted(left, key=lambda name: name not in PLANNED_FROM)
+        }
+
+    def _workbook(self, head: RunRecord) -> None:
+        if self._same and self._previous.has(WORKBOOK):
+            self._link(WORKBOOK)
+        elif write_exports_workbook(self._partial, head.started):
             self._files[WORKBOOK] = sum_of(self._partial / WORKBOOK)
 
-    def _list(self, head: RunRecord, parts: Sequence[Path], *, same: bool) -> None:
+    def _list(self, head: RunRecord) -> None:
         """Write the list of all objects, or take that of the earlier report if it has the same pages."""
         files = [name for name in self._previous.manifest.files if is_list_file(name)]
-        if same and files and self._previous.has(*files):
+        if self._same and files and self._previous.has(*files):
             self._link(*files)
             return
-        pages, rows = listed_pages(parts, self._listed)
+        pages, rows = listed_pages(self._parts(LISTED), self._listed)
         with speaking(self.renderer.language):
             shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
             context: dict[str, Any] = {"museum": shown, "here": OBJECTS, "pages": pages}
@@ -311,13 +322,15 @@ class ReportWriter:
                 self._write(page, text.encode())
         return key
 
-    def _plan(self, head: RunRecord, terms: PlanTerms) -> str:
+    def _plan(self, head: RunRecord, terms: PlanTerms, made: Mapping[str, Future[FileSum]]) -> str:
         """Write the page and the list of errands, or take those of the earlier report."""
         key = _key(self.renderer, [page.key for page in self._pages], terms)
         if key == self._previous.manifest.plan and self._previous.has(*PLAN_FILES):
             self._link(*PLAN_FILES)
             return key
         page, table = PLAN_FILES
+        for name in made.keys() & set(PLANNED_FROM):
+            made[name].result()
         plan = gathered_from(self._partial).plan(terms)
         # An unchanged night takes it over: like a gallery's page it says when its results were found.
         shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
