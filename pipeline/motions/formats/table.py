@@ -8,9 +8,10 @@ The header row names each column with its unit in parentheses or brackets; a cha
     time (s), H1 90 deg (g), H2 360 (g), V up (g)
     0.000, 0.0012, -0.0003, 0.0004
 
-Comma, semicolon, tab or blanks between the columns, equal time steps; decimal commas where no comma parts columns.  A SEED code (HNE) states
-its orientation by itself, and so do the names NS, EW and UD, also as acc_NS; a time without a unit is in seconds.  The
-lines with # are optional, and what they do not say, the file does not say.  K-NET CSV has its own head, see `nied`.
+Comma, semicolon, tab or blanks between the columns, equal time steps; decimal commas where no comma parts columns.  A
+SEED code (HNE) states its orientation by itself, and so do the names NS, EW and UD, also as acc_NS, and what `labels`
+knows of other languages; a time without a unit is in seconds.  The lines with # are optional, and what they do not say,
+the file does not say.  K-NET CSV has its own head, see `nied`.
 """
 
 from __future__ import annotations
@@ -29,7 +30,6 @@ from pipeline.quantities import Array
 _CELL = re.compile(r'^\s*"?\s*([^()\[\]"]{1,60}?)\s*[(\[]\s*([^()\[\]"]{1,20}?)\s*[)\]]\s*"?\s*$')
 _BARE = re.compile(r'^\s*"?\s*(time|t)\s*"?\s*$', re.IGNORECASE)
 _WORD = re.compile(rb"[^\s()\[\]]+[ \t]*(?:[(\[][^()\[\]]*[)\]])?")
-_PREFIX = re.compile(r"^(?:acc(?:el(?:eration)?)?|a)[ _.-]+", re.IGNORECASE)
 _TIME = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 0.001}
 _SPELLINGS = {
     "m/s^2": "m/s2", "m/s**2": "m/s2", "m/s/s": "m/s2", "m/s²": "m/s2", "cm/s^2": "cm/s2", "cm/s**2": "cm/s2",
@@ -212,9 +212,8 @@ def _channel(name: str) -> tuple[str, Orientation]:
     seed = code if re.fullmatch(r"[A-Z]{2}[A-Z0-9]", code) else ""
     if said.strip():
         return seed, trace_headers.orientation(said)
-    words = trace_headers.orientation(_PREFIX.sub("", name))
-    known = isinstance(words, float) or words in {"up", "down"}
-    return seed, words if known else trace_headers.seed_orientation(name)
+    words = labels.HeadColumn(name, "", "").orientation
+    return seed, words if labels.points(words) else None
 
 
 def _facts(lines: Lines, keys: dict[str, tuple[int, str]]) -> tuple[bool | None, str, str, Any]:

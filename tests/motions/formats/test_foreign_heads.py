@@ -24,7 +24,7 @@ HEADS = {
     "turkish": ("Zaman(s)\tK-G(cm/s^2)\tD-B(cm/s^2)\tDüşey(cm/s^2)", False, "cm/s2", [0, 90, "up"]),
     "chinese": ("时间(s),东西向加速度(cm/s2),南北向加速度(cm/s2),竖向加速度(cm/s2)", False, "cm/s2", [90, 0, "up"]),
     "russian": ("Время (с);Ускорение С-Ю (g);Ускорение В-З (g);Вертикаль (g)", True, "g", [0, 90, "up"]),
-    "an opposite order is asked for": ("t (s);O-E (g);S-N (g);V (g)", True, "g", ["O-E", "S-N", "up"]),
+    "an opposite order is asked for": ("t (s);O-E (g);S-N (g);V (g)", True, "g", [None, None, "up"]),
 }  # fmt: skip
 
 
