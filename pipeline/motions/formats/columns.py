@@ -327,7 +327,7 @@ def _accelerations(lines: Lines, block: _Block) -> list[int]:
     if not chosen:
         at = block.head.at.get("unit", block.head.at.get("columns", 0))
         unit = block.columns[0].unit if block.columns and block.columns[0].unit else block.head.unit
-        wrong = f"holds {kinds[0]} ({unit}), no acceleration"
+        wrong = f"holds {kinds[0]}{f' ({unit})' if unit else ''}, no acceleration"
         raise lines.error(at, wrong, "give the file of the acceleration")
     return chosen
 

@@ -66,18 +66,25 @@ _TIME = re.compile(
 )
 _PERIOD = re.compile(r"^(?:p[eé]r[ií]od\w*|periyot|schwingungsdauer|frequen\w+|freq|f|固有周期|周期|период)$", re.I)
 _SPECTRAL = re.compile(r"^(?:p?s[avd]|p?sa\b.*|spectral\b.*|spectrum|rot[dg]\d+|espectr\w*|spektral\w*)$", re.I)
+_NAMED = {
+    "velocity": re.compile(r"^(?:velo\w*|vitesse|geschwindigkeit|hız|скорость|速度)\b", re.I),
+    "displacement": re.compile(
+        r"^(?:displ\w*|despl\w*|spost\w*|d.placement|verschiebung|перемещение|变位|変位|位移)\b", re.I
+    ),
+}
 _CELL = re.compile(r"^([^()\[\]]{1,40}?)\s*(?:[(\[]\s*([^()\[\]]{1,20}?)\s*[)\]])?$")
 _WORD = re.compile(r"[^\s()\[\]]+(?:[ ]?[(\[][^()\[\]]*[)\]])?")
 _PREFIX = re.compile(
-    r"^(?:acc(?:el(?:eration|erazione)?)?|acc.l.ration|acel(?:eraci.n)?|beschleunigung|ivme|ускорение|a)[ _.-]+"
-    r"(?:comp(?:onente?|osante)?[ _.-]+)?",
+    r"^(?:acc(?:el(?:eration|erazione)?)?|acc.l.ration|acel(?:eraci.n)?|acelera..o|beschleunigung|ivme|"
+    r"ускорение|επιτ.χυνση|a)[ _.-]+(?:comp(?:onente?|osante)?[ _.-]+)?|^加速度(?=[A-Za-z])",
     re.I,
 )
 _SAID: dict[str, Orientation] = {
     **dict.fromkeys(("e-o", "eo", "este-oeste", "est-ouest", "est-ovest", "o-w", "ost-west", "d-b",
-                     "doğu-batı", "в-з", "восток-запад"), 90.0),
-    **dict.fromkeys(("norte-sur", "nord-sud", "nord-süd", "kuzey-güney", "k-g", "с-ю", "север-юг"), 0.0),
-    **dict.fromkeys(("verticale", "vertikal", "düşey", "arriba", "вертикаль"), "up"),
+                     "doğu-batı", "в-з", "восток-запад", "l-o", "leste-oeste", "α-δ"), 90.0),
+    **dict.fromkeys(("norte-sur", "nord-sud", "nord-süd", "kuzey-güney", "k-g", "с-ю", "север-юг", "norte-sul",
+                     "β-ν"), 0.0),
+    **dict.fromkeys(("verticale", "vertikal", "düşey", "arriba", "вертикаль", "κατακόρυφη"), "up"),
 }  # fmt: skip
 """Orientations in other languages; the first of two directions is the positive one."""
 
@@ -250,7 +257,8 @@ def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Reco
     head.processed = filtered if raw != filtered else None
     last = next((index for index in reversed(range(top)) if texts[index].strip("#%*;| ")), None)
     if last is not None:
-        head.columns = columns_of(texts[last], width, separator)
+        names = next((index for index in reversed(range(last)) if texts[index].strip("#%*;| ")), last)
+        head.columns = columns_of(_with_units(texts[names], texts[last], separator) or texts[last], width, separator)
         head.at["columns"] = last
     return head
 
@@ -258,6 +266,8 @@ def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Reco
 def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn, ...]:
     """Return the columns that a line names, none where it does not name so many."""
     text = text.lstrip("#%*| \ufeff").strip().rstrip(separator)
+    # A row's tabs may have become blanks; those of the names tell where one ends.
+    separator = separator or ("\t" if text.count("\t") == width - 1 else None)
     cells = [cell.strip().strip('"').strip() for cell in (text.split(separator) if separator else _WORD.findall(text))]
     found = [_CELL.match(cell) for cell in cells]
     if len(cells) != width or not all(found):
@@ -269,12 +279,27 @@ def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn
         in_time = word.lower() in _SECONDS and not _PERIOD.match(name)
         is_time = number == 0 and (in_time or (not word and bool(_TIME.match(name))))
         kind, unit = ("", word.lower()) if is_time else unit_of(word)
-        kind = "a spectrum" if spectral(name) else kind
+        kind = "a spectrum" if spectral(name) else kind or _kind_by(name)
         columns.append(HeadColumn(name, kind, unit, is_time))
     # A sentence may have as many words as a row has numbers: a time, units or directions tell names from it.
     pointing = sum(points(one.orientation) for one in columns)
     named = columns[0].is_time or any(one.kind for one in columns) or 2 * pointing > len(columns)
     return tuple(columns) if named and not any(":" in one.name or "=" in one.name for one in columns) else ()
+
+
+def _with_units(names: str, units: str, separator: str | None) -> str:
+    """A row of names with the units of the row below it, "" where that is none of units alone."""
+    rows = [text.lstrip("#%*| \ufeff").strip() for text in (names, units)]
+    parts = [[cell.strip().strip('"()[]') for cell in row.split(separator)] for row in rows]
+    known = [cell for cell in parts[1] if unit_of(cell)[0] or cell.lower() in _SECONDS]
+    if len(parts[0]) != len(parts[1]) or len(known) < len(parts[1]) or len(known) < 2:
+        return ""
+    return (separator or " ").join(f"{name} ({unit})" for name, unit in zip(*parts, strict=True))
+
+
+def _kind_by(name: str) -> str:
+    """What a column holds that has no unit, where its name says that it is no acceleration."""
+    return next((kind for kind, pattern in _NAMED.items() if pattern.match(name)), "")
 
 
 def spectral(name: str) -> bool:
@@ -302,7 +327,7 @@ def _text(raw: bytes) -> str:
         text = raw.decode("utf-8")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
-    return "".join(letter if letter.isprintable() else " " for letter in text).rstrip()
+    return "".join(letter if letter.isprintable() or letter == "\t" else " " for letter in text).rstrip(" ")
 
 
 def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:

@@ -24,6 +24,14 @@ HEADS = {
     "turkish": ("Zaman(s)\tK-G(cm/s^2)\tD-B(cm/s^2)\tDüşey(cm/s^2)", False, "cm/s2", [0, 90, "up"]),
     "chinese": ("时间(s),东西向加速度(cm/s2),南北向加速度(cm/s2),竖向加速度(cm/s2)", False, "cm/s2", [90, 0, "up"]),
     "russian": ("Время (с);Ускорение С-Ю (g);Ускорение В-З (g);Вертикаль (g)", True, "g", [0, 90, "up"]),
+    "italian": ("Tempo [s]\tAccelerazione NS [gal]\tAccelerazione EO [gal]\tAccelerazione Verticale [gal]", False, "gal",
+                [0, 90, "up"]),
+    "portuguese": ("Tempo (s);Aceleração N-S (m/s²);Aceleração L-O (m/s²);Aceleração Vertical (m/s²)", True, "m/s2",
+                   [0, 90, "up"]),
+    "greek": ("Χρόνος (s);Επιτάχυνση Β-Ν (cm/s2);Επιτάχυνση Α-Δ (cm/s2);Επιτάχυνση Κατακόρυφη (cm/s2)", True, "cm/s2",
+              [0, 90, "up"]),
+    "japanese": ("時間(s),加速度NS(gal),加速度EW(gal),加速度UD(gal)", False, "gal", [0, 90, "up"]),
+    "units in a row of their own": ("Time,NS,EW,UD\ns,gal,gal,gal", False, "gal", [0, 90, "up"]),
     "an opposite order is asked for": ("t (s);O-E (g);S-N (g);V (g)", True, "g", [None, None, "up"]),
 }  # fmt: skip
 
@@ -38,7 +46,7 @@ def test_heads_in_other_languages(tmp_path, name, end):
         rows = [
             separator.join(f"{x:.5f}" for x in (hand.DT * i, a, a / 2, a / 4)) for i, a in enumerate(hand.tone(count))
         ]
-        text = end.join([head, *(row.replace(".", ",") if comma else row for row in rows), ""])
+        text = end.join([*head.split("\n"), *(row.replace(".", ",") if comma else row for row in rows), ""])
         (tmp_path / "record.csv").write_bytes(codecs.BOM_UTF8 + text.encode())
         stream = open_traces(tmp_path / "record.csv", [])
         assert [trace.stats.kouros.orientation for trace in stream] == orientations
@@ -76,6 +84,45 @@ def test_spectra_are_no_records(tmp_path, head):
     (tmp_path / "spectrum.csv").write_text("\n".join([head, *rows, ""]))
     with pytest.raises(Exception, match=r"no acceleration|of no format that is known|spectr"):
         open_traces(tmp_path / "spectrum.csv", [])
+
+
+@pytest.mark.parametrize("head", ["time,displacement", "t;Vitesse NS", "Tiempo,velocidad", "時間,変位"])
+def test_what_is_no_acceleration_by_its_name_is_refused(tmp_path, head):
+    """Without a unit; a person who is asked for one could not know."""
+    rows = [f"{hand.DT * i:.2f}{';' if ';' in head else ','}{a:.5f}" for i, a in enumerate(hand.tone())]
+    (tmp_path / "record.csv").write_text("\n".join([head, *rows, ""]), encoding="utf-8")
+    with pytest.raises(FormatError, match="no acceleration"):
+        open_traces(tmp_path / "record.csv", [])
+
+
+def test_an_older_head_of_the_cwa_has_no_zone(tmp_path):
+    """StationCode first, no earthquake, times of a clock that nobody names."""
+    lines = national.cwa().decode().splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith("#StationCode"))
+    text = "\r\n".join(lines[first:]).replace("#StartTime(GMT+08)", "#StartTime") + "\r\n"
+    (tmp_path / "record.txt").write_bytes(text.encode())
+    stream = open_traces(tmp_path / "record.txt", [])
+    assert {trace.stats.kouros.format for trace in stream} == {"CWA"}
+    assert {trace.stats.kouros.start for trace in stream} == {"unknown"}
+
+
+def test_a_standard_file_of_the_uam_has_exponents(tmp_path):
+    """Red Acelerografica UAM, 2013: "16 campos/dato", 3E16.7, and exponents of three digits."""
+    text = national.unam().decode("latin-1")
+    top = next(i for i, line in enumerate(text.splitlines()) if line.startswith("FORMATO DATOS"))
+    lines = text.splitlines()
+    lines[top] = "FORMATO DATOS (FORTRAN,16 campos/dato) : 3E16.7"
+    rows = [
+        i for i, line in enumerate(lines) if i > top and len(line.split()) == 3 and line.strip()[0] in "-.0123456789"
+    ]
+    for i in rows:
+        cells = [f"{float(cell):.7e}" for cell in lines[i].split()]
+        lines[i] = "".join(f"{cell[:-2]}0{cell[-2:]}".rjust(16) for cell in cells)
+    (tmp_path / "a").write_bytes(text.encode("latin-1"))
+    (tmp_path / "b").write_bytes("\r\n".join([*lines, ""]).encode("latin-1"))
+    for one, other in zip(open_traces(tmp_path / "a", []), open_traces(tmp_path / "b", []), strict=True):
+        assert np.abs(one.data - other.data).max() < 1e-6
+        assert one.stats.kouros.orientation == other.stats.kouros.orientation
 
 
 def test_knet_csv(tmp_path):
