@@ -175,7 +175,7 @@ def renewals(data: Array, dt: float) -> list[Renewal]:
     -----
     Error: of 13 to 15 clean records to which a copy of their own was added 60 and 90 s later, it is found in 13 and 12
     at equal size, in 9 and 10 at half; of the 4 to 6 that are long enough for 120 s and more, in all.  Within the
-    strong shaking of the first, or weaker than STRONG, it is not.  None of 52 clean records is called so.
+    strong shaking of the first, or weaker than STRONG, it is not.  None of 46 clean records is called so.
 
     References
     ----------
