@@ -203,7 +203,7 @@ def _named(word: str, one: FileTrace) -> bool:
 
 def _surface(traces: list[FileTrace], depth: Callable[[Any], float | None], told: list[str]) -> list[FileTrace] | str:
     """Those at the surface of the ground: of KiK-net by its codes, of others by their depths; words where none is."""
-    kik = [one for one in traces if one[1].stats._format == "KNET" and one[1].stats.channel[-1:] in {"1", "2"}]
+    kik = [one for one in traces if one[1].stats.get("kouros", {}).get("format") == "KiK-net"]
     deep = {id(one[1]) for one in kik if one[1].stats.channel.endswith("1")}
     depths = {id(trace): depth(trace) for _, trace in traces}
     deep |= {key for key, metres in depths.items() if metres is not None and metres > 2.0}

@@ -129,12 +129,29 @@ def _in_piece(piece: Piece, first: Any, last: Any) -> list[Earthquake]:
 
 
 def _seconds(piece: Piece, start: Any, end: Any) -> tuple[Array, Array]:
-    """Root mean square and peak of each whole second, in the band."""
+    """Root mean square and peak of each whole second between two times, in the band."""
+    return in_seconds(piece.between(start, end).data, piece.dt)
+
+
+def in_seconds(samples: Any, dt: float) -> tuple[Array, Array]:
+    """Return root mean square and peak of each whole second, in the band.
+
+    Parameters
+    ----------
+    samples : array, shape (n,)
+        In any unit; what is masked or not finite counts as zero.
+    dt : float
+        Time step in s.
+
+    Returns
+    -------
+    (array, array), each of shape (seconds,)
+        Nothing for less than two seconds, or less than four samples in one.
+    """
     from scipy.signal import butter, sosfilt, sosfilt_zi
 
-    trace = piece.between(start, end)
-    data = np.nan_to_num(np.asarray(np.ma.filled(trace.data, 0), dtype=np.float64), posinf=0.0, neginf=0.0)
-    rate = 1.0 / piece.dt
+    data = np.nan_to_num(np.asarray(np.ma.filled(samples, 0), dtype=np.float64), posinf=0.0, neginf=0.0)
+    rate = 1.0 / dt
     count = round(rate)
     if count < 4 or data.size < 2 * count:
         return np.zeros(0), np.zeros(0)

@@ -98,16 +98,22 @@ def _of_file(name: str, traces: Sequence[Any]) -> list[tuple[str, list[FileTrace
     for station in sorted(stations):
         own = [one for one in every if f"{one[1].stats.network}.{one[1].stats.station}" == station]
         for _, part in _by_time(station, own):
-            instruments = sorted({one[1].id[:-1] for one in part})
+            instruments = sorted({_sensor(one[1]) for one in part})
             # Where each channel has an instrument's code of its own, the code only numbers channels.
             several = len(instruments) > 1 and len(part) >= 2 * len(instruments)
             split = (
-                [(code, [one for one in part if one[1].id[:-1] == code]) for code in instruments]
+                [(code, [one for one in part if _sensor(one[1]) == code]) for code in instruments]
                 if several
                 else [(name if len(stations) == 1 else station, part)]
             )
             made += split
     return made
+
+
+def _sensor(trace: Any) -> str:
+    """What the codes of one instrument's channels begin with; both of a KiK-net station, of which one is chosen."""
+    kik = trace.stats.get("kouros", {}).get("format") == "KiK-net"
+    return str(trace.id).rpartition(".")[0] if kik else str(trace.id[:-1])
 
 
 def _instrument(name: str, trace: Any) -> str:

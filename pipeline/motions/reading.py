@@ -8,7 +8,6 @@ import re
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +35,7 @@ from pipeline.motions.plateaus import full_scale
 from pipeline.motions.quality import clipped
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL, Component, Record
 from pipeline.motions.responses import load_obspy, read_inventory
+from pipeline.motions.several import tell_earthquakes, tell_renewals
 from pipeline.motions.unknown import unknown
 from pipeline.quantities import Array, G
 
@@ -53,12 +53,6 @@ MOST_SAMPLES = 4_000_000
 
 PGA_MOST = 20.0 * G
 WATER_LEVEL_DB = 60.0
-
-APART = 300.0
-"""Seconds of quiet between two earthquakes beyond which what holds both is no one record."""
-
-RIVAL = 0.25
-"""Share of the largest peak from which another earthquake may be the one that is meant (judgement)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,14 +187,16 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     elif "z" not in rows:
         steps.append(NO_VERTICAL)
     begins = 0.0
+    start = max(trace.stats.starttime for _, trace, _ in rows.values())
+    told = []
     if part is None:
         check_common(rows, record.accept, steps)
-        _tell_earthquakes(rows["x"], record, steps)
+        told = tell_earthquakes(rows["x"], record, steps)
     else:
-        start = max(trace.stats.starttime for _, trace, _ in rows.values())
         begins = start - part.zero
         # On the record's own samples, where it counts from one of them.
         begins = begins if record.origin_time is not None else round(begins / dt) * dt
+    steps += tell_renewals(data, dt, start, begins, window, told)
     way = (azimuths["x"], azimuths["y"])
     return Recording(dt, data, way, channels, tuple(steps), processed, velocity, begins, window, _magnitudes(rows))
 
@@ -258,22 +254,6 @@ def _pieces(file: Path, steps: list[str], *, in_part: bool) -> list[Piece]:
             remedy = f"choose a part by window_s or origin_time; earthquakes in it: {listed(earthquakes(mine))}"
             raise refusal(file, "file", wrong, remedy)
     return [whole(file, trace) for trace in open_traces(file, steps)]
-
-
-def _tell_earthquakes(row: Row, record: Record, steps: list[str]) -> None:
-    """Say that a record that is used as a whole holds several earthquakes; refuse what is no one record."""
-    file, trace, key = row
-    found = earthquakes([whole(file, trace)])
-    if len(found) < 2:
-        return
-    told = f"holds {len(found)} earthquakes ({key}): {listed(found, 1.0)}"
-    largest = max(one.peak for one in found)
-    strong = [one for one in found if one.peak >= RIVAL * largest]
-    if max((later.begins - one.ends for one, later in pairwise(strong)), default=0.0) > APART:
-        remedy = "choose one by origin_time or window_s"
-        judged(record.accept, "several", file, f"record {record.name!r}", told, remedy, steps)
-    else:
-        steps.append(f"{file.name} {told}; all of it is used, window_s or origin_time would choose")
 
 
 def open_traces(file: Path, steps: list[str]) -> list[Any]:

@@ -50,13 +50,21 @@ def unknown(file: Path) -> MotionError:
             return refusal(
                 file, "file", wrong, "give the file of the acceleration (such as volume 1 or 2 in place of 3)"
             )
-        first = f"its first line is {record_text.shown(record_text.printable(line))}"
+        first = f"its first line is {record_text.shown(_readable(line))}"
     wrong = f"is of no format that is known; {first}.  What is read: {', '.join(NAMES.values())}; MiniSEED, SAC, K-NET"
     wrong += " and KiK-net, and whatever else obspy reads"
     remedy = (
         "a table of numbers becomes a record by: kouros motions convert FILE --columns time,ns,ew,ud --unit gal --out"
     )
     return refusal(file, "file", wrong, f"{remedy} FOLDER (and --dt 0.01 where no column is the time)")
+
+
+def _readable(line: bytes) -> str:
+    try:
+        text = line.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return record_text.printable(line)
+    return "".join(letter if letter.isprintable() else " " for letter in text).rstrip()
 
 
 def _in_utf16(start: bytes) -> bool:

@@ -1,5 +1,5 @@
 """Kouros beside its peers, beside C, and by itself: `python -m tests.benchmarks [peers] [native] [models] [charts]
-[auto] [night] [starts] [event]`.
+[auto] [night] [starts] [event] [agencies]`.
 
 Machines are noisy: read the ratios of one run, not the times.
 """
@@ -7,6 +7,7 @@ Machines are noisy: read the ratios of one run, not the times.
 import sys
 
 from tests.benchmarks import (
+    agencies,
     auto,
     charts,
     event,
@@ -54,6 +55,7 @@ PARTS = {
     "scale": scale.scale,
     "starts": starts.starts,
     "event": event.answers,
+    "agencies": agencies.agencies,
 }
 
 

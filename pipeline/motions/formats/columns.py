@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import re
 from array import array
+from datetime import date
 from importlib import import_module
 from typing import Any
 
@@ -23,7 +24,7 @@ from pipeline.motions.formats.record_text import Lines, Source, shown
 from pipeline.quantities import Array
 
 _NUMBER = re.compile(r"^[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[Ee][+-]?\d{1,3})?$")
-_MOMENT = re.compile(r"^\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(?:\.\d{1,9})?Z?$")
+_MOMENT = re.compile(r"^(\d{4})[-/](\d\d)[-/](\d\d)[T ](\d\d):(\d\d):(\d\d(?:\.\d{1,9})?)(Z?)$")
 _TOUCHING = re.compile(r"(?<=\d)(?=[+-]\d*\.)")
 _DECIMAL = re.compile(r"(?<=\d),(?=\d)")
 _LEAST_ROWS, _MOST_COLUMNS, _MOST_HEAD = 5, 20, 200
@@ -36,8 +37,7 @@ _OTHERS = ("bhrc", "cosmos", "csmip", "csmnc", "cwa", "esm", "geonet", "jma", "n
 
 def is_format(source: Source) -> bool:
     """Whether a source is such numbers, under a head that says their step, or with a time; and no agency's format."""
-    text = record_text.head(source)
-    whole = len(text) < record_text.HEAD
+    text, whole = record_text.first_lines(source)
     # The last line of what was read may be half of one.
     lines = Lines("", [line.encode("latin-1") for line in text.splitlines()[: None if whole else -1]])
     top = _top(lines)
@@ -154,6 +154,8 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
         head.says(lines, top, "count", counted[0])
         head.says(lines, top, "step", counted[1])
     columns = head.columns[-width:] if head.columns else ()
+    if head.step is None and not (columns and columns[0].is_time) and _moments(lines, start, form):
+        _clocked(lines, start, form, head)
     values, lengths = _values(lines, start, form, width)
     block = _Block(head, values, columns)
     even = lengths == width and width > 1
@@ -205,6 +207,35 @@ def _cells(lines: Lines, index: int, form: tuple[str | None, bool]) -> list[str]
 def _moments(lines: Lines, index: int, form: tuple[str | None, bool]) -> int:
     """How many cells of a row are a time of the calendar, which is left out."""
     return int(bool(form[0]) and bool(_MOMENT.match(lines.text(index).split(form[0])[0].strip())))
+
+
+def _clocked(lines: Lines, start: int, form: tuple[str | None, bool], head: RecordHead) -> None:
+    """Take the step, and the beginning, from times of the calendar, where nothing else says the step."""
+    stamps = []
+    for index in range(start, len(lines)):
+        found = _MOMENT.match(lines.text(index).split(form[0])[0].strip())
+        if found is None:
+            break
+        stamps.append(found)
+    if len(stamps) < _LEAST_ROWS:
+        return
+    try:
+        days = [date(*map(int, one.group(1, 2, 3))).toordinal() for one in stamps]
+    except ValueError as error:
+        raise lines.error(start, f"has a time of the calendar that is none ({error})") from error
+    clock = np.array([[float(part) for part in one.group(4, 5, 6)] for one in stamps])
+    times = clock @ (3600.0, 60.0, 1.0) + 86400.0 * (np.array(days) - days[0])
+    times -= times[0]
+    dt = irregular.even_step(times, _digit([one[6] for one in stamps[:20]]))
+    if dt is None:
+        steps = np.diff(times)
+        worst = int(np.argmax(np.abs(steps - np.median(steps)))) + 1
+        wrong = f"its clock goes on by {steps[worst - 1]:.6g} s, and by {np.median(steps):.6g} s elsewhere"
+        raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
+    head.says(lines, start, "step", dt)
+    # Without a Z nobody knows whose clock it is.
+    if stamps[0][7] and head.start is None:
+        head.says(lines, start, "start", tuple(float(part) for part in stamps[0].group(1, 2, 3, 4, 5, 6)))
 
 
 def _values(lines: Lines, start: int, form: tuple[str | None, bool], width: int) -> tuple[Array, int]:
@@ -289,10 +320,14 @@ def _accelerations(lines: Lines, block: _Block) -> list[int]:
     chosen = [number for number, kind in enumerate(kinds) if kind in {"acceleration", "counts", ""}]
     if "acceleration" in kinds:
         chosen = [number for number, kind in enumerate(kinds) if kind == "acceleration"]
+    at = block.head.at.get("columns")
+    if at is not None and labels.of_spectra(lines.text(at)):
+        wrong = f"names spectra ({shown(lines.text(at))}), no acceleration"
+        raise lines.error(at, wrong, "give the file of the acceleration")
     if not chosen:
         at = block.head.at.get("unit", block.head.at.get("columns", 0))
         unit = block.columns[0].unit if block.columns and block.columns[0].unit else block.head.unit
-        wrong = f"holds {kinds[0]} ({unit}), no acceleration"
+        wrong = f"holds {kinds[0]}{f' ({unit})' if unit else ''}, no acceleration"
         raise lines.error(at, wrong, "give the file of the acceleration")
     return chosen
 

@@ -32,7 +32,11 @@ _MOST_KEYS = 100
 def is_format(source: Source) -> bool:
     """Whether a source is a CWA file, from its header."""
     text = record_text.head(source)
-    return text.startswith("#Earthquake Information") and "\n#StationCode" in text and "\n#SampleRate" in text
+    return (
+        text.startswith(("#Earthquake Information", "#StationCode"))
+        and "#StationCode" in text
+        and "\n#SampleRate" in text
+    )
 
 
 def _traces(lines: Lines, headonly: bool) -> list[Any]:
@@ -76,10 +80,11 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         at = int(np.argmax(off > 0.2 * dt + 0.001))
         raise lines.error(top + at, f"time {table[at, 0]:g} s is off the even step of {dt:g} s")
     at, found = said("StartTime", _TIME.pattern, "a time such as '2018/02/06-23:50:29.000'")
-    hours = _ZONE.match(units["StartTime"])
-    if hours is None:
-        raise lines.error(at, f"expected a zone such as (GMT+08), found {record_text.shown(units['StartTime'])}")
-    when = trace_headers.start_time(lines, at, *map(float, found.groups())) - 3600 * int(hours[1])
+    hours, zone = _ZONE.match(units["StartTime"]), units["StartTime"]
+    if hours is None and zone:
+        raise lines.error(at, f"expected a zone such as (GMT+08), found {record_text.shown(zone)}")
+    # Older files do not say whose clock theirs is.
+    when = trace_headers.start_time(lines, at, *map(float, found.groups())) - 3600 * int(hours[1]) if hours else None
     corrected = "dcoffset(corr)" in keys["AmplitudeUnit"][1].lower().replace(" ", "")
     about = _about(keys, units)
     traces = []
@@ -100,8 +105,8 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 network="TW",
                 station=keys["StationCode"][1] if "StationCode" in keys else "",
                 channel=trace_headers.channel_code(1.0 / dt, direction, number),
-                start=when + float(table[0, 0]),
-                start_is="record",
+                start=None if when is None else when + float(table[0, 0]),
+                start_is="unknown" if when is None else "record",
                 headonly=headonly,
                 peak={"acceleration": peak},
                 more={"notes": "the agency removed the offset, and nothing else"} if corrected else {},

@@ -1,6 +1,6 @@
 """What the head of a table of numbers says in words: step, number, unit, orientation, time, raw or processed.
 
-A label, in one of six languages, stands before a colon or an equals sign, with its unit in brackets or behind the
+A label, in one of a dozen languages, stands before a colon or an equals sign, with its unit in brackets or behind the
 number: "Time Increment (s) : 0.005", "Tasa de muestreo: 200 Hz", "NPTS= 3000, DT= .01 SEC".  The last line may name the
 columns.  What is said in no such words is passed over; what two lines say differently is refused.
 """
@@ -26,12 +26,14 @@ def _label(words: str, value: str) -> re.Pattern[str]:
 _STEP = _label(
     r"time (?:increment|step|interval)|(?:sampling|sample) (?:interval|period|step)|delta(?: ?t)?|dt|"
     r"intervalo de muestreo|paso de tiempo|intervallo di campionamento|passo di campionamento|"
-    r"pas (?:de temps|d'.{1,2}chantillonnage)|abtastintervall|zeitschritt",
+    r"pas (?:de temps|d'.{1,2}chantillonnage)|abtastintervall|zeitschritt|"
+    r".rnekleme aral...|zaman ad.m.|采样间隔|时间间隔|サンプリング間隔|шаг(?: по времени| дискретизации)?",
     rf"{_NUMBER}\s*([a-z]{{1,8}})?",
 )
 _RATE = _label(
     r"(?:sampling|sample)[ _](?:rate|freq(?:uency)?\.?)(?:_hz)?|sps|fs|(?:tasa|frecuencia|velocidad) de muestreo|"
-    r"frequenza di campionamento|fr.{1,2}quence d'.{1,2}chantillonnage|abtastrate",
+    r"muestreo|frequenza di campionamento|fr.{1,2}quence d'.{1,2}chantillonnage|abtastrate|"
+    r".rnekleme (?:frekans.|h.z.)|采样(?:频率|率)|サンプリング周波数|частота(?: дискретизации)?",
     _NUMBER,
 )
 _COUNT = _label(
@@ -40,7 +42,7 @@ _COUNT = _label(
     r"nombre de points|anzahl (?:der )?werte",
     r"(\d{1,9})(?![.\d])",
 )
-_UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit", r"(\S.*)")
+_UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit|birim|单位|単位|единицы(?: измерения)?", r"(\S.*)")
 _IN = re.compile(r"\bac\w{3,8}ation\b.{0,40}?\bin (?:units of )?(\S{1,12})\s*$", re.I)
 _TURN = _label(
     r"orientation|comp\.?|component[eo]?|composante|komponente|orientaci.{1,2}n|direction|azimuth(?:_deg)?|stream",
@@ -59,17 +61,66 @@ _PLACE = {key: _label(words, _NUMBER) for key, words in _PLACES.items()}
 _RAW = re.compile(r"\b(?:un(?:corrected|processed|filtered)|raw data|sin corregir)\b", re.I)
 _FILTERED = re.compile(r"\b(?:butterworth|band-?pass|high-?pass)\b|\bfilter\b.{0,40}[:=].*\d", re.I)
 
-_TIME = re.compile(r"^(?:time|t|zeit|tiempo|tempo|temps|seconds?|sec)$", re.I)
+_TIME = re.compile(
+    r"^(?:time|t|zeit|tiempo|tempo|temps|zaman|tijd|tid|czas|.as|timp|время|χρ.νος|时间|時間|seconds?|sec)$", re.I
+)
+_PERIOD = re.compile(r"^(?:p[eé]r[ií]od\w*|periyot|schwingungsdauer|frequen\w+|freq|f|固有周期|周期|период)$", re.I)
+_SPECTRAL = re.compile(r"^(?:p?s[avd]|p?sa\b.*|spectral\b.*|spectrum|rot[dg]\d+|espectr\w*|spektral\w*)$", re.I)
+_NAMED = {
+    "velocity": re.compile(r"^(?:velo\w*|vitesse|geschwindigkeit|hız|скорость|速度)\b", re.I),
+    "displacement": re.compile(
+        r"^(?:displ\w*|despl\w*|spost\w*|d.placement|verschiebung|перемещение|变位|変位|位移)\b", re.I
+    ),
+}
 _CELL = re.compile(r"^([^()\[\]]{1,40}?)\s*(?:[(\[]\s*([^()\[\]]{1,20}?)\s*[)\]])?$")
 _WORD = re.compile(r"[^\s()\[\]]+(?:[ ]?[(\[][^()\[\]]*[)\]])?")
-_PREFIX = re.compile(r"^(?:acc(?:el(?:eration)?)?|a)[ _.-]+", re.I)
-_SECONDS = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 0.001, "msec": 0.001}
+_PREFIX = re.compile(
+    r"^(?:acc(?:el(?:eration|erazione)?)?|acc.l.ration|acel(?:eraci.n)?|acelera..o|beschleunigung|ivme|"
+    r"ускорение|επιτ.χυνση|a)[ _.-]+(?:comp(?:onente?|osante)?[ _.-]+)?|^加速度(?=[A-Za-z])",
+    re.I,
+)
+_SAID: dict[str, Orientation] = {
+    **dict.fromkeys(("e-o", "eo", "este-oeste", "est-ouest", "est-ovest", "o-w", "ost-west", "d-b",
+                     "doğu-batı", "в-з", "восток-запад", "l-o", "leste-oeste", "α-δ"), 90.0),
+    **dict.fromkeys(("norte-sur", "nord-sud", "nord-süd", "kuzey-güney", "k-g", "с-ю", "север-юг", "norte-sul",
+                     "β-ν"), 0.0),
+    **dict.fromkeys(("verticale", "vertikal", "düşey", "arriba", "вертикаль", "κατακόρυφη"), "up"),
+}  # fmt: skip
+"""Orientations in other languages; the first of two directions is the positive one."""
+
+_CHINESE: dict[str, Orientation] = {
+    **dict.fromkeys(("东西", "東西"), 90.0), "南北": 0.0, **dict.fromkeys(("竖", "竪", "垂直", "上下"), "up")
+}  # fmt: skip
+"""The same in Chinese and Japanese, with 向 or 方向 behind them, and the word for acceleration before or after."""
+
+_GLYPHS = re.compile(r"(?:方向|方|向|分量|成分|加速度|[\s_:-])+")
+_SECONDS = {
+    "s": 1.0,
+    "sec": 1.0,
+    "secs": 1.0,
+    "second": 1.0,
+    "seconds": 1.0,
+    "ms": 0.001,
+    "msec": 0.001,
+    "с": 1.0,
+    "сек": 1.0,
+    "秒": 1.0,
+}
 _OTHERS = {
     **dict.fromkeys(("m/s", "cm/s", "mm/s", "in/s", "kine", "nm/s"), "velocity"),
     **dict.fromkeys(("m", "cm", "mm", "in", "nm"), "displacement"),
     **dict.fromkeys(("count", "counts", "digitalcounts"), "counts"),
 }
-_ALIKE = {"gals": "gal", "cm/s/s": "cm/s2", "m/s/s": "m/s2", "mm/s/s": "mm/s2", "g's": "g"}
+_ALIKE = {
+    "gals": "gal",
+    "cm/s/s": "cm/s2",
+    "m/s/s": "m/s2",
+    "mm/s/s": "mm/s2",
+    "g's": "g",
+    "м/с2": "m/s2",
+    "см/с2": "cm/s2",
+    "гал": "gal",
+}
 
 
 def unit_of(word: str) -> tuple[str, str]:
@@ -173,7 +224,9 @@ def turned(word: str) -> Orientation:
     if points(said):
         return said
     coded = trace_headers.seed_orientation(word.upper())
-    return said if coded is None else coded
+    plain = word.strip().lower().replace("/", "-")
+    other: Orientation = _SAID.get(plain, _CHINESE.get(_GLYPHS.sub("", word)))
+    return next((one for one in (coded, other) if one is not None), said)
 
 
 def read_head(lines: Lines, top: int, width: int, separator: str | None) -> RecordHead:
@@ -204,7 +257,8 @@ def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Reco
     head.processed = filtered if raw != filtered else None
     last = next((index for index in reversed(range(top)) if texts[index].strip("#%*;| ")), None)
     if last is not None:
-        head.columns = columns_of(texts[last], width, separator)
+        names = next((index for index in reversed(range(last)) if texts[index].strip("#%*;| ")), last)
+        head.columns = columns_of(_with_units(texts[names], texts[last], separator) or texts[last], width, separator)
         head.at["columns"] = last
     return head
 
@@ -212,6 +266,8 @@ def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Reco
 def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn, ...]:
     """Return the columns that a line names, none where it does not name so many."""
     text = text.lstrip("#%*| \ufeff").strip().rstrip(separator)
+    # A row's tabs may have become blanks; those of the names tell where one ends.
+    separator = separator or ("\t" if text.count("\t") == width - 1 else None)
     cells = [cell.strip().strip('"').strip() for cell in (text.split(separator) if separator else _WORD.findall(text))]
     found = [_CELL.match(cell) for cell in cells]
     if len(cells) != width or not all(found):
@@ -219,13 +275,41 @@ def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn
     columns = []
     for number, one in enumerate(found):
         name, word = (one[1], one[2] or "") if one else ("", "")
-        is_time = number == 0 and bool(_TIME.match(name)) and (not word or word.lower() in _SECONDS)
+        # In whatever language: of what is in seconds, nothing but a time is recorded.
+        in_time = word.lower() in _SECONDS and not _PERIOD.match(name)
+        is_time = number == 0 and (in_time or (not word and bool(_TIME.match(name))))
         kind, unit = ("", word.lower()) if is_time else unit_of(word)
+        kind = "a spectrum" if spectral(name) else kind or _kind_by(name)
         columns.append(HeadColumn(name, kind, unit, is_time))
     # A sentence may have as many words as a row has numbers: a time, units or directions tell names from it.
     pointing = sum(points(one.orientation) for one in columns)
     named = columns[0].is_time or any(one.kind for one in columns) or 2 * pointing > len(columns)
     return tuple(columns) if named and not any(":" in one.name or "=" in one.name for one in columns) else ()
+
+
+def _with_units(names: str, units: str, separator: str | None) -> str:
+    """A row of names with the units of the row below it, "" where that is none of units alone."""
+    rows = [text.lstrip("#%*| \ufeff").strip() for text in (names, units)]
+    parts = [[cell.strip().strip('"()[]') for cell in row.split(separator)] for row in rows]
+    known = [cell for cell in parts[1] if unit_of(cell)[0] or cell.lower() in _SECONDS]
+    if len(parts[0]) != len(parts[1]) or len(known) < len(parts[1]) or len(known) < 2:
+        return ""
+    return (separator or " ").join(f"{name} ({unit})" for name, unit in zip(*parts, strict=True))
+
+
+def _kind_by(name: str) -> str:
+    """What a column holds that has no unit, where its name says that it is no acceleration."""
+    return next((kind for kind, pattern in _NAMED.items() if pattern.match(name)), "")
+
+
+def spectral(name: str) -> bool:
+    """Whether a column is called what a response spectrum is, such as PSA: its values have the unit of a record's."""
+    return bool(_SPECTRAL.match(name.strip()))
+
+
+def of_spectra(text: str) -> bool:
+    """Whether a line names a response spectrum's values, in whatever form."""
+    return bool(re.search(r"\bP?S[AVD]\s*[(\[]|\b(?:response|spectral) (?:spectr|accel)", text, re.I))
 
 
 def points(said: Orientation) -> bool:
@@ -243,7 +327,7 @@ def _text(raw: bytes) -> str:
         text = raw.decode("utf-8")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
-    return "".join(letter if letter.isprintable() else " " for letter in text).rstrip()
+    return "".join(letter if letter.isprintable() or letter == "\t" else " " for letter in text).rstrip(" ")
 
 
 def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:

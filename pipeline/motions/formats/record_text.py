@@ -141,6 +141,22 @@ def shown(text: str) -> str:
 
 def head(source: Source) -> str:
     """Return the first 8 kB of a source as text, "" for what cannot be read as bytes; a stream keeps its position."""
+    return first_lines(source)[0]
+
+
+def first_lines(source: Source) -> tuple[str, bool]:
+    """Return the first 8 kB of a source as text, and whether that is all of it.
+
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        What is looked at; a stream keeps its position.
+
+    Returns
+    -------
+    (str, bool)
+        The text, with one kind of line ends and so shorter than what was read; "" for what cannot be read as bytes.
+    """
     try:
         if isinstance(source, (str, Path)):
             with Path(source).open("rb") as stream:
@@ -150,11 +166,11 @@ def head(source: Source) -> str:
             raw = source.read(HEAD)
             source.seek(position)
     except OSError:
-        return ""
+        return "", True
     # A text may end in NUL bytes or end-of-file marks; in front of anything else they mean that it is no text.
     if not isinstance(raw, bytes) or b"\0" in raw.rstrip(b"\0\x1a\r\n "):
-        return ""
-    return _plain(raw).decode("latin-1")
+        return "", True
+    return _plain(raw).decode("latin-1"), len(raw) < HEAD
 
 
 def _plain(raw: bytes) -> bytes:

@@ -8,9 +8,10 @@ The header row names each column with its unit in parentheses or brackets; a cha
     time (s), H1 90 deg (g), H2 360 (g), V up (g)
     0.000, 0.0012, -0.0003, 0.0004
 
-Comma, semicolon, tab or blanks between the columns, a point in the numbers, equal time steps.  A SEED code (HNE) states
-its orientation by itself, and so do the names NS, EW and UD, also as acc_NS; a time without a unit is in seconds.  The
-lines with # are optional, and what they do not say, the file does not say.
+Comma, semicolon, tab or blanks between the columns, equal time steps; decimal commas where no comma parts columns.  A
+SEED code (HNE) states its orientation by itself, and so do the names NS, EW and UD, also as acc_NS, and what `labels`
+knows of other languages; a time without a unit is in seconds.  The lines with # are optional, and what they do not say,
+the file does not say.  K-NET CSV has its own head, see `nied`.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, labels, nied, record_text, trace_headers
 from pipeline.motions.formats.record_text import Lines, Source
 from pipeline.motions.formats.trace_headers import FACTORS, Orientation
 from pipeline.quantities import Array
@@ -29,7 +30,6 @@ from pipeline.quantities import Array
 _CELL = re.compile(r'^\s*"?\s*([^()\[\]"]{1,60}?)\s*[(\[]\s*([^()\[\]"]{1,20}?)\s*[)\]]\s*"?\s*$')
 _BARE = re.compile(r'^\s*"?\s*(time|t)\s*"?\s*$', re.IGNORECASE)
 _WORD = re.compile(rb"[^\s()\[\]]+[ \t]*(?:[(\[][^()\[\]]*[)\]])?")
-_PREFIX = re.compile(r"^(?:acc(?:el(?:eration)?)?|a)[ _.-]+", re.IGNORECASE)
 _TIME = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 0.001}
 _SPELLINGS = {
     "m/s^2": "m/s2", "m/s**2": "m/s2", "m/s/s": "m/s2", "m/s²": "m/s2", "cm/s^2": "cm/s2", "cm/s**2": "cm/s2",
@@ -45,7 +45,12 @@ _MOST_COLUMNS = 100
 
 
 def is_format(source: Source) -> bool:
-    """Whether a source is such a table: its first row names a time and only accelerations, each with a known unit."""
+    """Whether a source is such a table: its first row names a time and only accelerations, each with a known unit.
+
+    K-NET CSV is one as well.
+    """
+    if nied.is_format(source):
+        return True
     for line in record_text.head(source).splitlines()[:_MOST_COMMENTS]:
         if line.strip() and not line.startswith("#"):
             cells = _cells(line.encode("latin-1"))
@@ -55,6 +60,8 @@ def is_format(source: Source) -> bool:
 
 def _traces(lines: Lines, headonly: bool) -> list[Any]:
     """Return the traces of a table, one a column."""
+    if nied.is_first(lines):
+        return nied.traces(lines, headonly)
     top, keys = _top(lines)
     row = lines.lines[top]
     named = _cells(row)
@@ -64,6 +71,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         raise lines.error(top, f"{wrong} {record_text.shown(lines.text(top))}", "declare each column's unit")
     if len(cells) > _MOST_COLUMNS:
         raise lines.error(top, f"{len(cells)} columns are more than a record has", "split it by stations")
+    lines = _with_points(lines, top + 1, _separator(row))
     table = _numbers(lines, top + 1, _separator(row), len(cells))
     dt = _step(lines, top + 1, _TIME[cells[0][1]] * table[:, 0], _TIME[cells[0][1]])
     timed = _BARE.match(record_text.printable(_parts(row)[0])) is None
@@ -92,6 +100,16 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
             )
         )
     return traces
+
+
+def _with_points(lines: Lines, start: int, separator: bytes | None) -> Lines:
+    """The same with points for the commas of numbers, where something else parts the columns and no number has one."""
+    if separator in {None, b","} or start >= len(lines):
+        return lines
+    first = lines.lines[start]
+    if b"." in first or not re.search(rb"\d,\d", first):
+        return lines
+    return Lines(lines.file, lines.lines[:start] + [line.replace(b",", b".") for line in lines.lines[start:]])
 
 
 def _separator(row: bytes) -> bytes | None:
@@ -123,7 +141,11 @@ def _cells(row: bytes) -> list[tuple[str, str] | None]:
 
 def _is_table(cells: list[tuple[str, str]]) -> bool:
     first = len(cells) >= 2 and cells[0][0].lower() in {"time", "t"} and cells[0][1] in _TIME
-    return first and all(unit in FACTORS for _, unit in cells[1:])
+    return (
+        first
+        and not any(labels.spectral(name) for name, _ in cells[1:])
+        and all(unit in FACTORS for _, unit in cells[1:])
+    )
 
 
 def _top(lines: Lines) -> tuple[int, dict[str, tuple[int, str]]]:
@@ -190,9 +212,8 @@ def _channel(name: str) -> tuple[str, Orientation]:
     seed = code if re.fullmatch(r"[A-Z]{2}[A-Z0-9]", code) else ""
     if said.strip():
         return seed, trace_headers.orientation(said)
-    words = trace_headers.orientation(_PREFIX.sub("", name))
-    known = isinstance(words, float) or words in {"up", "down"}
-    return seed, words if known else trace_headers.seed_orientation(name)
+    words = labels.HeadColumn(name, "", "").orientation
+    return seed, words if labels.points(words) else None
 
 
 def _facts(lines: Lines, keys: dict[str, tuple[int, str]]) -> tuple[bool | None, str, str, Any]:

@@ -17,11 +17,12 @@ from pipeline.motions.formats.record_text import Lines, Source
 _TITLE = "ARCHIVO ESTANDAR DE ACELERACION"
 _KEY = re.compile(r"^([A-Z][A-Za-z0-9 .,()\[\];/-]{3,60}?)\s*:\s?(.*)$")
 _CHANNELS = re.compile(r",?\s*C\d{1,2}-C\d{1,2}")
-_SHAPE = re.compile(r"^(\d{1,2})F(\d{1,2})\.(\d{1,2})$")
+_SHAPE = re.compile(r"^(\d{1,2})[FE](\d{1,2})\.(\d{1,2})$")
 _DAY = re.compile(r"^(\d{4})/(\d\d)/(\d\d)$")
 _CLOCK = re.compile(r"^(\d{1,2}):(\d{1,2}):(\d{1,2}(?:\.\d{0,6})?)$")
 _COORDINATE = re.compile(r":\s*(\d{1,3}(?:\.\d{1,8})?)\s*L(?:AT|ONG)\.?\s*([NSEWO])\b", re.IGNORECASE)
 _SIZE = re.compile(r"\bM([WSLB]?)\s*=\s*(\d\.\d{1,2})", re.IGNORECASE)
+_WIDTH = re.compile(r"^FORMATO DATOS\s*\(FORTRAN,\s*\d{1,2} campos/dato\)$", re.I)
 _DATA = re.compile(r"^DATOS DE ACELERACION\b")
 _RULE = re.compile(r"^-{5,}\+")
 _MOST_LINES = 300
@@ -57,8 +58,8 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     at, unit = said("UNIDADES DE LOS DATOS")
     if not re.match(r"(?i)^gal\b", unit):
         raise lines.error(at, f"expected the unit Gal, found {record_text.shown(unit)}")
-    whole = "FORMATO DATOS (FORTRAN,10 campos/dato)"
-    at, text = said(whole if whole in keys else "FORMATO DATOS")
+    whole = next((key for key in keys if _WIDTH.match(key)), "FORMATO DATOS")
+    at, text = said(whole)
     shape = _SHAPE.match(text)
     if shape is None:
         raise lines.error(at, f"expected a format such as 3F10.3, found {record_text.shown(text)}")

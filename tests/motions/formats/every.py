@@ -37,5 +37,7 @@ SPECIMENS: dict[str, tuple[str, Callable[[], bytes]]] = {
     "columns-of-words": ("columns", national.worded),
     "columns-of-a-platform": ("columns", national.platform),
     "geocsv": ("columns", national.geocsv),
+    "knet-csv": ("table", national.knet_csv),
+    "kiknet-csv": ("table", lambda: national.knet_csv(kik=True)),
 }
 """Name -> the reader's module in pipeline.motions.formats, and what writes the file."""

@@ -223,3 +223,21 @@ def geocsv(unit: str = "M/S**2") -> bytes:
     rows = [f"2001-01-01T00:{1 if i >= 50 else 0:02d}:{(59.5 + DT * i) % 60:09.6f}Z, {a:.7f}"
             for i, a in enumerate(tone())]  # fmt: skip
     return joined(head + rows, "\n")
+
+
+def knet_csv(kik: bool = False, count: int = 60, seconds: str = "0.6") -> bytes:
+    """Head as NIED writes it (station and earthquake of a real file), with the offset in the samples."""
+    names = [f"{n}(gal)" for n in range(1, 7)] if kik else ["N-S(gal)", "E-W(gal)", "U-D(gal)"]
+    place = "#Code,Latitude,Longitude,Height1(m),Height2(m)" if kik else "#Code,Latitude,Longitude,Height(m)"
+    lines = [
+        "#K-NET CSV", "#Event", "#OriginTime,Latitude,Longitude,Depth(km),Magnitude",
+        "#2026/01/13 01:58:00,45.048,142.167,0,5.2", "#Station", place,
+        "#FKSH09,37.3530,140.4264,60,260" if kik else "#HKD004,45.2149,142.2260,4",
+        "#Record", "#SamplingFrequency(Hz)", "#100", "#DurationTime(s)", f"#{seconds}",
+        "#Offset", f"#{','.join(names)}", "#" + ",".join(["-2.90"] * len(names)),
+        f"#Time,RelativeTime(s),{','.join(names)}",
+    ]  # fmt: skip
+    for index, value in enumerate(100 * tone(count)):
+        cells = ",".join(f"{value / (1 + number) - 2.9:.2f}" for number in range(len(names)))
+        lines.append(f"2026/01/13 01:58:43.{index % 100:02d},{0.01 * index:.2f},{cells}")
+    return joined(lines)
