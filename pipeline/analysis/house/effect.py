@@ -8,6 +8,7 @@ from enum import StrEnum
 
 from pipeline.analysis.house.rule import Span
 from pipeline.records import Anchorage, Estimate, Furniture, Hanging, Item, Mount, Origin, Support
+from pipeline.records import phrases as say
 
 _WORDS: Mapping[StrEnum, str] = {
     Hanging.WIRE: "hangs from a wire or one hook",
@@ -51,7 +52,7 @@ class HouseStatement:
         if not isinstance(span, Span):
             raise TypeError(f"{self.field} is no number")
         low, best, high = (times * end for end in (span.low, span.best, span.high))
-        note = f"{what}: by the house rule for {self.words}"
+        note = say.STATED(what=what, rule=self.words)
         return Estimate(best, unit, Origin.STATED, low, high, note, self.source)
 
 

@@ -28,6 +28,7 @@ from pipeline.records import (
     Verdict,
 )
 from pipeline.records.result import BOUNDS
+from pipeline.report.assumed import assumed
 from pipeline.report.by_hand import by_hand
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
@@ -309,12 +310,11 @@ class Sayings:
         span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
         text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
         # As among the assumptions of the object, where the same text is named once.
-        note = self.assumed(e.note) if e.origin is Origin.ASSUMED else clean(e.note)
-        return NumberView(text, self.origin(e.origin), note, clean(e.source))
+        return NumberView(text, self.origin(e.origin), self.assumed(e.note), clean(e.source))
 
     def assumed(self, text: str) -> str:
         """Say what was assumed, in the language and the lengths of the reader."""
-        return self._assumed.had(text, lambda: self._units.restated(said(clean(text))))
+        return self._assumed.had(text, lambda: assumed(clean(text), self._units))
 
 
 def taken_words(scene: Scene) -> str:

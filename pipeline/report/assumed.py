@@ -1,0 +1,83 @@
+"""What a run assumed, in the reader's units and language: see `pipeline.records.phrase`."""
+
+import re
+from collections.abc import Mapping
+from functools import cache
+
+from pipeline.analysis.classify import object_classes
+from pipeline.quantities import LENGTHS
+from pipeline.records.phrase import Number, Phrase
+from pipeline.records.phrases import PHRASES
+from pipeline.report.language import _, local, parted, said
+from pipeline.report.text import bare
+from pipeline.report.units import Units
+
+CITED = frozenset({"rule", "case", "words", "aside", "shape"})
+"""Places of phrases for what the museum, or somebody else, wrote: it stays as it is."""
+
+_PLACE = re.compile(r"\{(\w+)\}")
+_PRINTED = re.compile(r"Table (\d+)")
+_THIN = "\u202f"
+_SIGNS = {"": "", "°": "°", "%": "\u00a0%", "kg/m3": f"{_THIN}kg/m³"}
+
+
+def assumed(text: str, units: Units) -> str:
+    """Say what was assumed, or where a number comes from.
+
+    text : as the run stored it, clauses parted by "; "; what no phrase of Kouros wrote stays as it is
+    """
+    return parted(_clause(clause, units) for clause in text.split("; "))
+
+
+def _clause(clause: str, units: Units) -> str:
+    for phrase in PHRASES:
+        places = phrase.places(clause)
+        if places is not None:
+            return _told(phrase, places, units)
+    return said(clause)
+
+
+def _told(phrase: Phrase, places: Mapping[str, str | Number], units: Units) -> str:
+    written = {
+        name: _number(found, units) if isinstance(found, Number) else found if name in CITED else _words(found)
+        for name, found in places.items()
+    }
+    # Not by `format`: what was found may have braces, and a catalogue is checked for the names that it asks for.
+    return _PLACE.sub(lambda place: written[place[1]], _(phrase.asked))
+
+
+def _number(found: Number, units: Units) -> str:
+    if found.unit in LENGTHS:
+        value, *ends = found.si
+        return units.text(value, "m") + (f" ({units.bare(ends[0], ends[1], 'm')})" if ends else "")
+    best, *span = (local(text.replace("-", "−")) for text in found.texts)
+    sign = _SIGNS.get(found.unit, f"{_THIN}{found.unit}")
+    return best + sign + (" (" + _("%(low)s to %(high)s") % {"low": span[0], "high": span[1]} + ")" if span else "")
+
+
+def _words(text: str) -> str:
+    """Say what stands in a place: the title of a class, a material, ways to hang, or tables."""
+    title = _classes().get(text)
+    if title:
+        told = _(title)
+        return told[:1].lower() + told[1:]
+    for known in (text, text.lower(), bare(text)):
+        told = _(known)
+        if told != known:
+            return told
+    return _several(text)
+
+
+def _several(text: str) -> str:
+    several, last = text.rpartition(", or ")[::2]
+    if several:
+        return _("{several}, or {last}").format(several=", ".join(map(_, several.split(", "))), last=_(last))
+    tables = [_("Table {number}").format(number=found[1]) if (found := _PRINTED.fullmatch(one)) else one
+              for one in text.split(" and ")]  # fmt: skip
+    return _(" and ").join(tables)
+
+
+@cache
+def _classes() -> Mapping[str, str]:
+    """Return the titles of Kouros's classes as notes write them, each with the title itself."""
+    return {title.lower(): title for title in object_classes().values()}
