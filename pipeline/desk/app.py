@@ -308,7 +308,7 @@ class _Pages:
         whose = (f"name {name[:100].casefold()}", f"from {request.client.host if request.client else ''}")
         wait = self._attempts.wait(*whose)
         if wait:
-            words = f"Too many attempts: try again in {wait / 60.0:.0f} min."
+            words = f"Too many attempts: try again in {wait / 60.0:.0f}\u00a0min."
             again = DeskAnswer("sign_in.html", {"name": name, "problem": words}, 429)
             return await run_in_threadpool(self._page, request, None, again)
         token = await run_in_threadpool(

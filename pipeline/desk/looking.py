@@ -70,8 +70,8 @@ def search(asked: Asked) -> DeskAnswer:
     found = list(islice(hits, SHOWN * (page - 1), SHOWN * page + 1))
     context = {
         "found": found[:SHOWN], "more": len(found) > SHOWN, "page": page, "q": words, "gallery": gallery,
-        "state": state, "galleries": sorted(run.galleries, key=sorting_key), "total": len(run.objects),
-        "states": run.states, "asked": narrowed,
+        "state": state, "galleries": run.gallery_names, "total": len(run.objects),
+        "states": run.states, "asked": narrowed, "fragment": asked.site.fragment,
     }  # fmt: skip
     return DeskAnswer("found.html" if asked.fragment else "search.html", context)
 
@@ -339,7 +339,7 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
         "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house],
         "classes": sorted(run.classes, key=class_title), "class_told": class_title, "word_told": word_told,
         "counts": run.classes,
-        "galleries": sorted(run.galleries, key=sorting_key), "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
+        "galleries": run.gallery_names, "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
         "stated": {name: stated_told(name) for name in STATED}, "states": states,
         "unit": cell_unit(QUANTITIES[states][0], run.units) if states in QUANTITIES else "",
         "supports": tuple(Support), "about": len(about), "typed": given, "problem": problem,

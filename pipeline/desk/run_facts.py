@@ -153,6 +153,11 @@ class RunFacts:
         return tuple(sorted(((name, class_title(name)) for name in object_classes()), key=itemgetter(1)))
 
     @cached_property
+    def gallery_names(self) -> tuple[str, ...]:
+        """The galleries as people list them."""
+        return tuple(sorted(self.galleries, key=sorting_key))
+
+    @cached_property
     def states(self) -> Counter[str]:
         """How many objects are in each state."""
         return Counter(one.state for one in self.objects)

@@ -39,9 +39,9 @@ def stated_told(name: str) -> str:
 def lasting(minutes: float) -> str:
     """Return how long something takes, in hours where it is more than one and a half."""
     if minutes <= _LONG:
-        return _("%(minutes)s min") % {"minutes": f"{minutes:.0f}"}
+        return _("%(minutes)s\u00a0min") % {"minutes": f"{minutes:.0f}"}
     hours = minutes / 60.0
-    return _("%(hours)s h") % {"hours": local(f"{hours:.1f}".removesuffix(".0") if hours < _MANY else f"{hours:.0f}")}
+    return _("%(hours)s\u00a0h") % {"hours": local(f"{hours:.1f}".removesuffix(".0") if hours < _MANY else f"{hours:.0f}")}
 
 
 _LONG, _MANY = 90.0, 5.0
