@@ -3,6 +3,7 @@
 import logging
 import secrets
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -181,6 +182,8 @@ class _Pages:
             known = self._kept.get(state, key) if kept else None
             if known is not None:
                 return self._with_token(request, asked.who, known, 200)
+            if state is not None:
+                asked = replace(asked, newest=state.newest)
             with speaking(self.site.run.language):
                 answer = page(asked)
                 if answer.to:

@@ -88,7 +88,7 @@ def object_context(
 
     section : which form is open
     """
-    facts, run = asked.site.facts(object_number), asked.site.run
+    facts, run = asked.site.facts(object_number, asked.newest), asked.site.run
     listed = run.by_number.get(object_number)
     query, typed = asked.query, dict(typed or {})
     installable = asked.site.workspace.measures.installable

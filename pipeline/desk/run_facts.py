@@ -96,9 +96,10 @@ class RunFacts:
         self.by_number = {one.number: one for one in rows}
         self.galleries = Counter(one.gallery for one in rows if one.on_display)
         self.classes = Counter(one.object_class for one in rows if one.on_display)
+        # Now, and not by the first four who search at once.
+        self._searched = self._words()
 
-    @cached_property
-    def _searched(self) -> tuple[str, list[int]]:
+    def _words(self) -> tuple[str, list[int]]:
         """The words of all objects, a line each, and where each line begins."""
         lines = [folded(f"{o.number} {o.title} {o.gallery}") for o in self.objects]
         starts, at = [], 1

@@ -41,7 +41,9 @@ def lasting(minutes: float) -> str:
     if minutes <= _LONG:
         return _("%(minutes)s\u00a0min") % {"minutes": f"{minutes:.0f}"}
     hours = minutes / 60.0
-    return _("%(hours)s\u00a0h") % {"hours": local(f"{hours:.1f}".removesuffix(".0") if hours < _MANY else f"{hours:.0f}")}
+    return _("%(hours)s\u00a0h") % {
+        "hours": local(f"{hours:.1f}".removesuffix(".0") if hours < _MANY else f"{hours:.0f}")
+    }
 
 
 _LONG, _MANY = 90.0, 5.0

@@ -221,7 +221,9 @@ def _facts(answer: Answer, quake: ReportedEarthquake, distance_km: float | None)
         facts.append(
             (
                 _("Peak velocity here"),
-                between.format(value=f"{shaking.pgv_cm_s:.1f}\u00a0cm/s", low=f"{low:.1f}", high=f"{high:.1f}\u00a0cm/s"),
+                between.format(
+                    value=f"{shaking.pgv_cm_s:.1f}\u00a0cm/s", low=f"{low:.1f}", high=f"{high:.1f}\u00a0cm/s"
+                ),
             )
         )
     facts.append((_("From"), clean(shaking.origin)))
