@@ -35,7 +35,7 @@ from pipeline.desk.guard import (
     person,
 )
 from pipeline.desk.kept_pages import KeptPages
-from pipeline.desk.site import AT_ONCE, DeskSite
+from pipeline.desk.site import AT_ONCE, DeskSite, DeskState
 from pipeline.errors import KourosError
 from pipeline.operations.event_log import note
 from pipeline.report.language import speaking
@@ -178,6 +178,8 @@ class _Pages:
     def _answered(self, request: Request, asked: Asked, page: Page, *, kept: bool = False) -> Response:
         try:
             state = self.site.state if kept else None
+            if state is None:
+                self.site.look()
             key = (page, tuple(asked.query.items()), asked.fragment, asked.who)
             known = self._kept.get(state, key) if kept else None
             if known is not None:
@@ -189,7 +191,7 @@ class _Pages:
                 if answer.to:
                     note("desk", who=asked.name, path=request.url.path, object=asked.form.get("number", ""))
                     return self._remembered(RedirectResponse(answer.to, 303), asked)
-                text = self._filled_in(request, asked.who, answer)
+                text = self._filled_in(request, asked.who, answer, state)
             if kept:
                 self._kept.keep(state, key, text)
             return self._with_token(request, asked.who, text, answer.status)
@@ -202,7 +204,9 @@ class _Pages:
     def _page(self, request: Request, who: Person | None, answer: DeskAnswer) -> Response:
         return self._with_token(request, who, self._filled_in(request, who, answer), answer.status)
 
-    def _filled_in(self, request: Request, who: Person | None, answer: DeskAnswer) -> str:
+    def _filled_in(
+        self, request: Request, who: Person | None, answer: DeskAnswer, state: DeskState | None = None
+    ) -> str:
         site = self.site
         env = getattr(site, "environment", None) or environment()
         context: dict[str, Any] = {
@@ -211,7 +215,7 @@ class _Pages:
             "saved": "", "run": None, "shaken": False,
         }  # fmt: skip
         if answer.template not in ("sign_in.html", "told.html"):
-            context |= {"run": site.run, "shaken": site.events.there}
+            context |= {"run": site.run, "shaken": site.events.there if state is None else state.shaken}
         return fill(env, f"desk/{answer.template}", context | dict(answer.context))
 
     def _with_token(self, request: Request, who: Person | None, text: str, status: int) -> Response:
@@ -270,7 +274,7 @@ class _Pages:
         who = person(request, self.site.serving, self.site.workspace.engine)
         if who is None:
             return self._unknown(request)
-        name, folder = request.path_params["name"], self.site.run.folder
+        name, folder = request.path_params["name"], self.site.look().folder
         ending = Path(name).suffix
         # Only names that the folder itself has: none with a slash, none that leads elsewhere, none that is hidden.
         if ending not in _REPORT_KINDS or name.startswith(".") or name not in {f.name for f in folder.iterdir()}:

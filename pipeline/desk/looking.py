@@ -17,7 +17,7 @@ from pipeline.desk.errors import NotThereError
 from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.object_facts import ObjectFacts, cells, vocabulary
 from pipeline.desk.run_facts import SHOWN, ListedObject, RunFacts
-from pipeline.desk.words import STATED, lasting, name_told, stated_told, word_told
+from pipeline.desk.words import lasting, name_told
 from pipeline.planning.efforts import EffortSpan
 from pipeline.quantities import sorting_key
 from pipeline.records import DecisionKind, Support, in_force
@@ -25,6 +25,7 @@ from pipeline.report.language import _, said
 from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.errand_views import priced, spanned, title_of, trade_word
+from pipeline.report.pages.house_words import STATED, stated_told, word_told
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.views import STATES, DecisionView, State
 from pipeline.report.units import Units

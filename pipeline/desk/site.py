@@ -67,7 +67,17 @@ class DeskSite:
 
     @property
     def run(self) -> RunFacts:
-        """The newest run, and the settings of now.
+        """The newest run as of the last look (`look`): every page looks once before anything of it is filled in.
+
+        Raises
+        ------
+        DeskError
+            Where there is none.
+        """
+        return self._run or self.look()
+
+    def look(self) -> RunFacts:
+        """Look whether there is a newer run or the settings changed; return the newest run.
 
         Raises
         ------
@@ -100,7 +110,7 @@ class DeskSite:
         DeskError
             Where there is no run.
         """
-        run = self.run
+        run = self.look()
         return DeskState(run.run_id, self._changed, newest_ids(self.workspace.engine), self.events.there)
 
     def _renew(self, newest: tuple[int, ...] | None = None) -> tuple[int, ...]:
