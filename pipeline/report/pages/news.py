@@ -57,7 +57,12 @@ class NewsLine:
     @property
     def sentence(self) -> str:
         """The line as a sentence, for places without markup."""
-        return plain(f"{self.head}: {self.number} {self.title}".rstrip() + f"{self.text}.")
+        return plain(f"{self.head}: {self.number} {self.title}".rstrip() + self.ended)
+
+    @property
+    def ended(self) -> str:
+        """The text with its full stop: one, where it ends in somebody's initials."""
+        return self.text if self.text.endswith(".") else f"{self.text}."
 
 
 @dataclass(frozen=True, slots=True)
