@@ -54,8 +54,8 @@ class Number:
 class Phrase:
     """A clause with places: ``{name}`` for words, ``{name:unit}`` for a number in that unit, "-" for a ratio.
 
-    ``{name:unit~2}`` writes it with two significant digits; else with as many as it has, up to six.  No clause has
-    "; " in it: that parts clauses.
+    ``{name:unit~2}`` writes it with two significant digits, ``{name:unit~0f}`` with no decimals; else it has up to six
+    digits.  No clause has "; " in it: that parts clauses.
 
     text : in English
     """
@@ -68,7 +68,7 @@ class Phrase:
         found = []
         for before, name, spec, _ in Formatter().parse(self.text):
             unit, _, digits = (spec or "").partition("~")
-            found.append((before, name or "", unit, f".{digits}g" if digits else "g"))
+            found.append((before, name or "", unit, f".{digits}{'' if digits[-1:] == 'f' else 'g'}" if digits else "g"))
         return tuple(found)
 
     @cached_property

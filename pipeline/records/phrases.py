@@ -1,4 +1,4 @@
-"""The phrases in which a run says what it assumed and where its numbers come from."""
+"""The phrases in which a run says what it assumed, where its numbers come from, and why measures were passed over."""
 
 from pipeline.records.phrase import Phrase
 
@@ -94,6 +94,39 @@ FURNITURE_HEIGHT = Phrase("it stands {height:m} above the floor, {table} for {fu
 STATED = Phrase("{what}: by the house rule for {rule}")
 FAILED = Phrase("{without}: Kouros failed, which is not your fault ({words})")
 TELL_MAKERS = Phrase("please tell its makers")
+
+REACHES = Phrase("{check} reaches {times:-~2} times what is allowed by the best estimates")
+MAY_BE_MORE = Phrase("{check} may still be more than is allowed")
+NOTHING_LIMITS = Phrase("nothing limits {check} then")
+NOTHING_LEFT = Phrase("nothing would be left of what {check} is allowed")
+MAY_REACH = Phrase("{check} may still reach {times:-~2} times what is allowed")
+MAY_REACH_AND_DOES = Phrase(
+    "{check} may still reach {times:-~2} times what is allowed, {best:-~2} times by the best estimates"
+)
+HARM_REMAINS = Phrase("harm would remain with a probability of {chance:%~0f}")
+HARM_REMAINS_WITH_ROOM = Phrase("with {room:cm~0f} harm would remain with a probability of {chance:%~0f}")
+NOT_ENOUGH = Phrase("{check} is not enough")
+MORE_THAN_BORNE = Phrase("{check} is more than it bears")
+NEEDS_ROOM = Phrase("it would need {room:cm~0f} of room, more than the {allowed:cm~0f} allowed")
+NEEDS_ROOM_AROUND = Phrase("it would need {room:cm~0f} of room around its plate, more than the {allowed:cm~0f} allowed")
+HAS_NO_ROOM = Phrase("it would need {room:cm~0f} of room, more than the {allowed:cm~0f} that it can have")
+PLATE = Phrase("it would need a plate {width:cm~0f} wide")
+PLATFORM = Phrase("its platform would have to be {width:cm~0f} wide")
+LENGTH_ALLOWED = Phrase("{limit:cm~0f} is allowed")
+BALLAST = Phrase("it would need {share:%~0f} of its mass")
+SHARE_ALLOWED = Phrase("{limit:%~0f} is allowed")
+LARGER_SECTION = Phrase("its section would have to be {times:-~2} times as large")
+TIMES_ALLOWED = Phrase("{limit:-} is allowed")
+TOO_LOW_TO_BRACE = Phrase("a brace is out of proportion for what is lower than {height:cm~0f}")
+HARMS = Phrase("it harms {material}")
+HOLDS_AT_MOST = Phrase("at most it holds {times:-~2} times what is needed, and {asked:-} times are asked")
+SHARES_CASE = Phrase("{number} shares its case: {refusal}")
+NO_ISOLATOR_UNDER = Phrase(
+    "the catalogue has no horizontal isolator that keeps to its stroke and none under {stroke:cm~0f}"
+)
+NO_ISOLATOR_FOR_ALL = Phrase(
+    "no isolator of the catalogue passes on little enough within its stroke for all {objects:-} objects of its case"
+)
 
 PHRASES = tuple(
     sorted((one for one in globals().values() if isinstance(one, Phrase)), key=lambda one: one.letters, reverse=True)

@@ -1,10 +1,11 @@
-"""What a run assumed, in the reader's units and language: see `pipeline.records.phrase`."""
+"""What a run assumed, and why measures were passed over, in the reader's units and language.
+
+See `pipeline.records.phrase`: a run stores both in English.
+"""
 
 import re
 from collections.abc import Mapping
-from functools import cache
 
-from pipeline.analysis.classify import object_classes
 from pipeline.quantities import LENGTHS
 from pipeline.records.phrase import Number, Phrase
 from pipeline.records.phrases import PHRASES
@@ -12,8 +13,11 @@ from pipeline.report.language import _, local, parted, said
 from pipeline.report.text import bare
 from pipeline.report.units import Units
 
-CITED = frozenset({"rule", "case", "words", "aside", "shape"})
+CITED = frozenset({"rule", "case", "words", "aside", "shape", "number"})
 """Places of phrases for what the museum, or somebody else, wrote: it stays as it is."""
+
+REFUSAL = "refusal"
+"""The place for a clause within a clause."""
 
 _PLACE = re.compile(r"\{(\w+)\}")
 _PRINTED = re.compile(r"Table (\d+)")
@@ -29,6 +33,19 @@ def assumed(text: str, units: Units) -> str:
     return parted(_clause(clause, units) for clause in text.split("; "))
 
 
+def rejected(text: str, units: Units) -> str:
+    """Say which measure was passed over and why, as the run stored it: its title, a colon, and clauses."""
+    title, colon, why = text.partition(": ")
+    return f"{said(title)}{colon}{assumed(why, units)}" if colon else said(text)
+
+
+def rule_words(rule: str) -> str:
+    """Return by which rule an object is of its class: the rule's name, and in the reader's language why."""
+    name, colon, why = rule.partition(": ")
+    told, bracket, found = why.rpartition(" (")
+    return f"{name}{colon}{said(told)}{bracket}{found}" if bracket else f"{name}{colon}{said(why)}"
+
+
 def _clause(clause: str, units: Units) -> str:
     for phrase in PHRASES:
         places = phrase.places(clause)
@@ -39,7 +56,13 @@ def _clause(clause: str, units: Units) -> str:
 
 def _told(phrase: Phrase, places: Mapping[str, str | Number], units: Units) -> str:
     written = {
-        name: _number(found, units) if isinstance(found, Number) else found if name in CITED else _words(found)
+        name: _number(found, units)
+        if isinstance(found, Number)
+        else found
+        if name in CITED
+        else _clause(found, units)
+        if name == REFUSAL
+        else _words(found)
         for name, found in places.items()
     }
     # Not by `format`: what was found may have braces, and a catalogue is checked for the names that it asks for.
@@ -57,9 +80,10 @@ def _number(found: Number, units: Units) -> str:
 
 def _words(text: str) -> str:
     """Say what stands in a place: the title of a class, a material, ways to hang, or tables."""
-    title = _classes().get(text)
-    if title:
-        told = _(title)
+    # Titles of classes and checks begin with a small letter here.
+    title = text[:1].upper() + text[1:]
+    told = _(title)
+    if told != title:
         return told[:1].lower() + told[1:]
     for known in (text, text.lower(), bare(text)):
         told = _(known)
@@ -75,9 +99,3 @@ def _several(text: str) -> str:
     tables = [_("Table {number}").format(number=found[1]) if (found := _PRINTED.fullmatch(one)) else one
               for one in text.split(" and ")]  # fmt: skip
     return _(" and ").join(tables)
-
-
-@cache
-def _classes() -> Mapping[str, str]:
-    """Return the titles of Kouros's classes as notes write them, each with the title itself."""
-    return {title.lower(): title for title in object_classes().values()}

@@ -13,7 +13,7 @@ from pipeline.collection.reading import read_items
 from pipeline.records import Anchorage, Furniture, Hanging, Item, Scene, Support
 from pipeline.records.phrase import Number, Phrase
 from pipeline.records.phrases import PHRASES
-from pipeline.report.assumed import assumed
+from pipeline.report.assumed import assumed, rejected
 from pipeline.report.language import language, speaking
 from pipeline.report.units import Units
 
@@ -70,10 +70,28 @@ def test_what_is_assumed_is_said_in_the_readers_language(text: str, code: str, t
         assert assumed(text, Units("cm")) == told
 
 
+@pytest.mark.parametrize(
+    ("text", "code", "told"),
+    [
+        ("Wider base: it would need a plate 156 cm wide; 120 cm is allowed", "en",
+         "Wider base: it would need a plate 61.4\u202fin wide; 47.2\u202fin is allowed"),
+        ("Keep clear: with 30 cm harm would remain with a probability of 12 %", "it",
+         "Lasciare spazio libero: con 11,8\u202fin resterebbe una probabilità di danno del 12\u00a0%"),
+        ("Fasten: dynamic stress may still reach 3.1 times what is allowed, 1.2 times by the best estimates", "el",
+         "Στερέωση: δυναμική τάση: μπορεί ακόμη να φτάσει 3,1 φορές το επιτρεπόμενο, 1,2 φορές κατά τις "
+         "καλύτερες εκτιμήσεις"),
+        ("Our own net: it is too small for 30 cm", "es", "Our own net: it is too small for 30 cm"),
+    ],
+)  # fmt: skip
+def test_why_a_measure_was_passed_over_is_said_in_the_readers_words(text: str, code: str, told: str) -> None:
+    with speaking(language(code, None)):
+        assert rejected(text, Units("in")) == told
+
+
 @pytest.mark.parametrize("phrase", PHRASES, ids=lambda phrase: phrase.asked[:40])
 def test_a_phrase_finds_again_what_it_wrote(phrase: Phrase) -> None:
     names = {name: unit for _, name, unit, _ in phrase._pieces if name}
-    given = {name: (0.031, 0.12, 4.5) if unit else f"some {name}" for name, unit in names.items()}
+    given = {name: (0.03, 0.12, 4.5) if unit else f"some {name}" for name, unit in names.items()}
     written = phrase(**given)
     first = next(one for one in PHRASES if one.places(written) is not None)
     assert first is phrase

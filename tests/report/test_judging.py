@@ -9,7 +9,8 @@ from lxml import etree
 from pipeline.analysis.classify import classify
 from pipeline.quantities import G
 from pipeline.records import Fragility, Furniture, Item, Spacing, Verdict
-from pipeline.report.pages.describe import _rule_words, furniture
+from pipeline.report.assumed import rule_words
+from pipeline.report.pages.describe import furniture
 from pipeline.report.pages.judging import fragility_views, shaking_view, spacing_views, years
 from pipeline.report.units import Units
 
@@ -139,4 +140,4 @@ def test_what_an_object_stands_in_is_said_with_where_that_is_known_from() -> Non
     ],
 )
 def test_why_an_object_is_of_its_class_is_said_once(rule: str, told: str) -> None:
-    assert _rule_words(rule) == told
+    assert rule_words(rule) == told
