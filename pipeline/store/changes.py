@@ -148,8 +148,9 @@ class _Comparison:
 
     def _ruled(self) -> dict[str, tuple[Ruled, ...]]:
         """Return by number the house rules that are new for an object, or hold for it no longer."""
-        rules = tuple(tuple(run["settings"].get(HOUSE_RULES) or ()) for run in (self.before, self.after))
-        if rules[0] == rules[1]:
+        rules = [run["settings"].get(HOUSE_RULES) for run in (self.before, self.after)]
+        # A run of an earlier version does not say which it had.
+        if None in rules or rules[0] == rules[1]:
             return {}
         found = {}
         for number, scene in self._differing_scenes[1].items():
