@@ -13,7 +13,7 @@ from math import sqrt
 
 from pipeline.records import Estimate, Hanging, Item, Origin
 from pipeline.records import phrases as say
-from pipeline.records.phrase import Phrase
+from pipeline.records.phrase import Clause
 from pipeline.tables.hanging_rows import UsualHanging, hanging_rows, usual_hangings
 
 ANY = "*"
@@ -114,7 +114,7 @@ def _flag(guess: HangingGuess, column: str) -> Estimate:
     return Estimate(each[0], "-", guess.origin, min(each), max(each), guess.note, guess.source)
 
 
-def _of_table(ways: Sequence[Hanging], column: str, unit: str, times: float, phrase: Phrase) -> Estimate:
+def _of_table(ways: Sequence[Hanging], column: str, unit: str, times: float, phrase: Clause) -> Estimate:
     spans = [hanging_rows()[way].range(column) for way in ways]
     low, best, high = (
         times * value for value in (min(s.low for s in spans), spans[0].value, max(s.high for s in spans))

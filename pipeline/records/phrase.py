@@ -51,7 +51,7 @@ class Number:
 
 
 @dataclass(frozen=True)
-class Phrase:
+class Clause:
     """A clause with places: ``{name}`` for words, ``{name:unit}`` for a number in that unit, "-" for a ratio.
 
     ``{name:unit~2}`` writes it with two significant digits, ``{name:unit~0f}`` with no decimals; else it has up to six

@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 
 from pipeline.quantities import LENGTHS
-from pipeline.records.phrase import Number, Phrase
+from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES
 from pipeline.report.language import _, local, parted, said
 from pipeline.report.text import bare
@@ -54,7 +54,7 @@ def _clause(clause: str, units: Units) -> str:
     return said(clause)
 
 
-def _told(phrase: Phrase, places: Mapping[str, str | Number], units: Units) -> str:
+def _told(phrase: Clause, places: Mapping[str, str | Number], units: Units) -> str:
     written = {
         name: _number(found, units)
         if isinstance(found, Number)

@@ -11,7 +11,7 @@ from pipeline.analysis.classify import classify
 from pipeline.collection.mapping import PRESETS, load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.records import Anchorage, Furniture, Hanging, Item, Scene, Support
-from pipeline.records.phrase import Number, Phrase
+from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES
 from pipeline.report.assumed import assumed, rejected
 from pipeline.report.language import language, speaking
@@ -89,7 +89,7 @@ def test_why_a_measure_was_passed_over_is_said_in_the_readers_words(text: str, c
 
 
 @pytest.mark.parametrize("phrase", PHRASES, ids=lambda phrase: phrase.asked[:40])
-def test_a_phrase_finds_again_what_it_wrote(phrase: Phrase) -> None:
+def test_a_phrase_finds_again_what_it_wrote(phrase: Clause) -> None:
     names = {name: unit for _, name, unit, _ in phrase._pieces if name}
     given = {name: (0.03, 0.12, 4.5) if unit else f"some {name}" for name, unit in names.items()}
     written = phrase(**given)
