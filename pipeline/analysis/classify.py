@@ -27,8 +27,12 @@ from pipeline.models import MODELS, model_named
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
 from pipeline.records import Estimate, Furniture, Item, Origin, Scene, Support, too_thin
+from pipeline.records import phrases as say
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
+
+_CORD = 1.0
+"""How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
 
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
@@ -125,9 +129,8 @@ class _Builder:
             self.missing.append("height or suspension length")
         elif length is None and item.height_m is not None:
             half = 0.5 * item.height_m
-            note = "length from hook to centre of gravity: half its height, assumed for: hung from its upper edge; "
-            note += "a hook further down gives half of that, a cord from a rail up to 1 m more"
-            length = Estimate.assumed(half, 0.5 * half, half + 1.0, "m", note, "judgement")
+            note = f"{say.LENGTH_FROM_HOOK()}; {say.OTHER_HOOKS(more=_CORD)}"
+            length = Estimate.assumed(half, 0.5 * half, half + _CORD, "m", note, "judgement")
         self._keep("length", length)
         if item.suspension_length_m is None:
             self._spread("length", "height")
@@ -135,8 +138,8 @@ class _Builder:
         if damping is None and self.support is Support.HUNG:
             damping = wall_damping_of(self.values, item.wall_surface, item.back_surface)
         elif damping is None:
-            note = "damping: none, as the paper takes it for chandeliers"
-            damping = Estimate.assumed(0.0, 0.0, 0.0, "-", note, "Agbabian et al. 1991, sec. 2.4")
+            source = "Agbabian et al. 1991, sec. 2.4"
+            damping = Estimate.assumed(0.0, 0.0, 0.0, "-", say.NO_DAMPING(), source)
         self._keep("damping", damping)
 
     def _standing(self) -> None:
@@ -154,7 +157,7 @@ class _Builder:
         halves = half_widths(item, "" if _own_base(self.row) else self.row.name, width, depth, cg)
         self.found |= halves
         if item.susceptible is None and not self.row.rocking_harms:
-            note = f"rocking itself is not taken to harm it, assumed for: {self.row.told}"
+            note = say.NO_HARM_BY_ROCKING(told=self.row.told)
             source = f"{self.row.table}, {self.row.name} ({self.row.source})"
             self._keep(FALLS_IN, Estimate.assumed(HALF, HALF, HALF, "-", note, source))
         self._friction()
@@ -218,7 +221,7 @@ class _Builder:
             known, lost = (width, "depth") if depth is None else (depth, "width")
             if not row.round or known is None:
                 return None, None, [lost if assumes else f"base {lost}"]
-            note = f"{lost} not recorded: taken as round"
+            note = say.ROUND(size=lost)
             source = known.source or f"{row.table}, {row.name}"
             other = Estimate.assumed(known.value, known.low, known.high, "m", note, source)
             return (known, other, []) if depth is None else (other, known, [])
@@ -254,11 +257,9 @@ class _Builder:
         allowable = _measured(item.allowable_stress_pa, "Pa")
         if allowable is None:
             bears = self.material.tensile_range
-            low, value, high = (v / 1e6 for v in (bears.low, bears.value, bears.high))
-            note = f"allowable stress: {self.material.told}, {value:g} ({low:g} to {high:g}) MPa"
-            note += (
-                ", condition factor 1 (not recorded)" if item.condition is None else f", condition factor {condition:g}"
-            )
+            note = say.STRESS_UNSEEN(material=self.material.told, stress=bears)
+            if item.condition is not None:
+                note = say.STRESS(material=self.material.told, stress=bears, factor=condition)
             allowable = Estimate.assumed(
                 bears.value * condition, bears.low * condition, bears.high * condition, "Pa", note, bears.source
             )
@@ -270,7 +271,7 @@ class _Builder:
             return False
         self._keep("allowable_stress", allowable)
         height = item.section_height_m or 0.0
-        note = f"lever: from the {'section' if height else 'base'} to the centre of gravity"
+        note = say.LEVER(start="section" if height else "base")
         low, lever, high = (max(one - height, 0.0) for one in (cg.low, cg.value, cg.high))
         self._keep("lever", Estimate(lever, "m", Origin.DERIVED, low, high, note))
         self.found |= found.section.estimates(item.orientation_deg is not None)
@@ -330,7 +331,7 @@ def _undecided(scene: Scene, values: AssumedValues) -> Scene:
     mine, theirs = values.classes[scene.object_class], values.classes[other[0]]
     if mine.support is theirs.support and mine.models == theirs.models:
         return scene
-    told = f"its class is not certain: {theirs.told} is possible ({other[1]:.2f}); say what it is (kouros decide)"
+    told = f"{say.OTHER_CLASS(told=theirs.told, chance=other[1])}; {say.SAY_CLASS()}"
     return replace(scene, assumptions=(*scene.assumptions, told))
 
 
@@ -388,7 +389,7 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     if mount is not None and mount.note:
         assumptions.insert(0, mount.note)
     elif stands.support is None:
-        assumptions.insert(0, f"support: {support.value}, assumed for: {row.told}; not recorded")
+        assumptions.insert(0, f"{say.SUPPORT(support=support.value, told=row.told)}; {say.NOT_RECORDED()}")
     told = tuple(dict.fromkeys(assumptions))
     scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)

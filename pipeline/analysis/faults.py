@@ -14,6 +14,7 @@ from typing import Any, TypeVar, get_type_hints
 from pipeline.analysis.classify import unclassified
 from pipeline.errors import fault_words
 from pipeline.records import Assessment, Finding, Found, Item, Scene
+from pipeline.records import phrases as say
 
 Some = TypeVar("Some")
 Made = TypeVar("Made")
@@ -164,7 +165,7 @@ def each_apart(
 
 def with_fault(assessment: Assessment, words: str, without: str) -> Assessment:
     """Return what was found about an object, saying what of it is not known because Kouros failed."""
-    said = f"{without}: Kouros failed, which is not your fault ({words}); please tell its makers"
+    said = f"{say.FAILED(without=without, words=words)}; {say.TELL_MAKERS()}"
     scene = replace(assessment.scene, assumptions=(*assessment.scene.assumptions, said))
     return replace(assessment, scene=scene, fault=words)
 

@@ -30,6 +30,7 @@ from math import exp, hypot, log, pi, sqrt
 from pipeline.analysis.section import Section
 from pipeline.models.stress import RIGID_PERIOD
 from pipeline.records import Estimate, Item, Origin
+from pipeline.records import phrases as say
 from pipeline.tables import Range
 from pipeline.tables.assumed import assumed
 from pipeline.tables.assumed_rows import Material, ObjectClass
@@ -169,13 +170,10 @@ def estimated_frequency(body: Body, row: ObjectClass, material: Material) -> Est
     if not low < 1.0 / RIGID_PERIOD:
         # Of what is rigid nothing more need be said; so of what nothing is known (NaN).
         return None
-    shown = f"{value:.2g} Hz ({low:.2g} to {high:.2g} Hz)"
-    elastic = f"{modulus.value / 1e9:g} ({modulus.low / 1e9:g} to {modulus.high / 1e9:g}) GPa"
-    note = (
-        f"frequency: {shown}, as of a cantilever of {material.told} of {elastic}, as slender as its critical section "
-        f"over {share.value:g} ({share.low:g} to {share.high:g}) of its height, {clamp.value:g} ({clamp.low:g} to "
-        f"{clamp.high:g}) times as stiff as on a perfect clamp; its base is taken as held while it bends, estimated"
+    note = say.FREQUENCY(
+        frequency=(low, value, high), material=material.told, modulus=modulus, share=share, times=clamp
     )
+    note = f"{note}; {say.HELD_WHILE_IT_BENDS()}"
     return Estimate(value, "Hz", Origin.ASSUMED, low, high, note, f"{share.source}; {modulus.source}; {clamp.source}")
 
 
@@ -227,8 +225,7 @@ def concentration(item: Item, material: Material) -> Estimate | None:
     if ductile or item.section_height_m:
         return None
     found = bending("concentration")
-    span = f"{found.value:g} ({found.low:g} to {found.high:g})"
-    note = f"stress where its held base ends: {span} times the nominal, assumed for what does not yield"
+    note = say.CONCENTRATION(times=found)
     return Estimate(found.value, "-", Origin.ASSUMED, found.low, found.high, note, found.source)
 
 

@@ -15,6 +15,7 @@ from pydantic import BaseModel, Field, model_validator
 
 from pipeline.errors import InputError
 from pipeline.records import ContactPolygon, Estimate, Item, Origin
+from pipeline.records import phrases as say
 from pipeline.tables import table
 from pipeline.tables.rows import Entries, Number, checked
 
@@ -100,9 +101,8 @@ def _of_polygon(item: Item) -> dict[str, Estimate]:
 
 def _between(value: float, least: float) -> Estimate:
     if least >= value:
-        return Estimate.measured(value, "m", "contact polygon, as recorded")
-    note = f"contact polygon, as recorded: {value:.4g} m, or {least:.4g} m by the least that it may be"
-    return Estimate(value, "m", Origin.DERIVED, least, value, note)
+        return Estimate.measured(value, "m", say.POLYGON())
+    return Estimate(value, "m", Origin.DERIVED, least, value, say.POLYGON_LEAST(value=value, least=least))
 
 
 def tilted(found: Mapping[str, Estimate], slope: float, cg_height: Estimate) -> dict[str, Estimate]:
@@ -123,7 +123,7 @@ def tilted(found: Mapping[str, Estimate], slope: float, cg_height: Estimate) -> 
         half_width, and what was found of the others: none is less.
     """
     low, value, high = (slope * height for height in (cg_height.low, cg_height.value, cg_height.high))
-    note = f"half width: {slope:.3g} times the height of the centre of gravity, by a tilt test"
+    note = say.TILTED(slope=slope)
     tested = Estimate(value, "m", Origin.DERIVED, low, high, note, "tilt test", "cg_height")
     own = [name for name in ALONG if name in found]
     nearest = min(own, key=lambda name: found[name].value, default="")
@@ -211,5 +211,5 @@ def _borne(side: Estimate, item: Item, object_class: str) -> Estimate:
     row = bearing_of(item, object_class)
     if not object_class or side.origin is not Origin.ASSUMED or side.low == side.high or row is None:
         return side
-    note = f"{row.share:g} ({row.low:g} to {row.high:g}) of its base bears, assumed: {row.title}; {side.note}"
+    note = f"{say.BEARS(share=(row.low, row.share, row.high), contact=row.title)}; {side.note}"
     return replace(side, value=row.share * side.value, low=row.low * side.low, high=row.high * side.high, note=note)

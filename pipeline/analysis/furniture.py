@@ -15,6 +15,7 @@ from math import radians
 from pipeline.analysis.house.effect import HouseEffect
 from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Anchorage, Estimate, Furniture, Item, Origin, Scene, Support
+from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.furniture_rows import ANY, STANDING, FurnitureRow, UsualFurniture, usual_furniture
 
@@ -38,6 +39,9 @@ _CASES = (
     (re.compile(r"\b(shelf|shelves|Regal|étagère)\b", re.IGNORECASE), Furniture.SHELF),
 )
 """Words by which the name of a case says that it is none; any other name is that of a showcase."""
+
+WHAT_HANGS = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what hangs from above"}
+"""What is said of furniture to be usual for, where it is so for whatever hangs."""
 
 _NOT_FASTENED = re.compile(r"; (?:taken as )?not fastened, .*$", re.DOTALL)
 """The end of a note of furniture that is not fastened, with who says so."""
@@ -166,7 +170,7 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
     row = _usual(object_class, support.value if hangs else STANDING, item.height_m or 0.0)
     about = "what stands" if row.object_class == ANY else object_class.replace("_", " ")
     from_ = f" from {row.taller_than:g} m on" if row.taller_than else ""
-    about = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what hangs from above"}.get(support, about)
+    about = WHAT_HANGS.get(support, about)
     words = f"assumed for: {about}{from_}, usual_furniture.csv; not recorded"
     return FurnitureGuess(row.furniture, Origin.ASSUMED, words, f"usual_furniture.csv ({row.source})")
 
@@ -221,14 +225,15 @@ def _numbers(row: FurnitureRow, guess: FurnitureGuess, said: Anchorage | None, w
     if frequency is not None and damping is not None:
         low, best, high = frequency.low, frequency.value, frequency.high
         held = held or f"taken as {'not ' if loose else ''}fastened, which nobody says"
-        note = f"furniture: {row.title}, {guess.words}; of {best:g} Hz ({low:g} to {high:g}), or stiff"
-        out[FREQUENCY] = Estimate.assumed(best, low, high, "Hz", f"{note}, {row.table}; {held}", frequency.source)
+        shakes = say.FURNITURE_SHAKES(frequency=frequency, table=row.table)
+        note = f"furniture: {row.title}, {guess.words}; {shakes}; {held}"
+        out[FREQUENCY] = Estimate.assumed(best, low, high, "Hz", note, frequency.source)
         low, best, high = damping.low, damping.value, damping.high
-        note = f"damping of its furniture: {best:g} ({low:g} to {high:g}), {row.table} for {row.title}"
+        note = say.FURNITURE_DAMPING(damping=damping, table=row.table, furniture=row.title)
         out[DAMPING] = Estimate.assumed(best, low, high, "-", note, damping.source)
     if row.level_error:
         most = radians(row.level_error)
-        note = f"level: off by up to {row.level_error:g}° either way, {row.table} for {row.title}"
+        note = say.FURNITURE_LEVEL(angle=row.level_error, table=row.table, furniture=row.title)
         out[LEVEL_ERROR] = Estimate.assumed(0.0, -most, most, "rad", note, f"{row.table} ({row.source})")
     return out | _body(row) if loose else out
 
@@ -237,20 +242,19 @@ def _body(row: FurnitureRow) -> dict[str, Estimate]:
     """Return what furniture slides or rocks by: of the museum's own row, or else of Kouros's."""
     row = row if row.shelf_height is not None else assumed().furniture[row.key]
     out = {}
-    for name, column, unit, what in (
-        (HALF_WIDTH, "half_width", "m", "from the middle of its base to its edge"),
-        (CG_HEIGHT, "cg_height", "m", "height of its centre of gravity"),
-        (FRICTION, "friction", "-", "friction on its floor"),
+    for name, column, unit, phrase in (
+        (HALF_WIDTH, "half_width", "m", say.FURNITURE_HALF_WIDTH),
+        (CG_HEIGHT, "cg_height", "m", say.FURNITURE_CG),
+        (FRICTION, "friction", "-", say.FURNITURE_FRICTION),
     ):
         span = row.range(column)
         if span is None:
             continue
-        low, best, high = span.low, span.value, span.high
-        of = "" if unit == "-" else f" {unit}"
-        note = f"{what}: {best:g} ({low:g} to {high:g}){of}, {row.table} for {row.title}"
-        out[name] = Estimate.assumed(best, low, high, unit, note, span.source)
+        note = phrase(span=span, table=row.table, furniture=row.title)
+        out[name] = Estimate.assumed(span.value, span.low, span.high, unit, note, span.source)
     if row.shelf_height is not None:
-        at, note = row.shelf_height, f"it stands {row.shelf_height:g} m above the floor, {row.table} for {row.title}"
+        at = row.shelf_height
+        note = say.FURNITURE_HEIGHT(height=at, table=row.table, furniture=row.title)
         out[SHELF_HEIGHT] = Estimate.assumed(at, at, at, "m", note, f"{row.table} ({row.source})")
     return out
 

@@ -12,13 +12,12 @@ from functools import cache
 from math import sqrt
 
 from pipeline.records import Estimate, Hanging, Item, Origin
+from pipeline.records import phrases as say
+from pipeline.records.phrase import Clause
 from pipeline.tables.hanging_rows import UsualHanging, hanging_rows, usual_hangings
 
 ANY = "*"
 """In the column object_class of usual_hangings.csv: of every class that no other row names."""
-
-NOT_RECORDED = "how it hangs is not recorded"
-"""What is said of a work that may hang in several ways."""
 
 OFFSET = (0.3, 0.5, 0.7)
 """Centre of gravity of a framed work in front of its back, as a share of its depth, by judgement: low, best, high."""
@@ -97,12 +96,11 @@ def hanging_of(item: Item, object_class: str, told: Hanging | None = None, by: s
     told = told or item.hanging
     if told is not None:
         origin = Origin.STATED if by else Origin.MEASURED
-        return HangingGuess((told,), origin, f"hanging: {titled((told,))}, {by or 'as recorded'}")
+        return HangingGuess((told,), origin, f"{say.HANGING(ways=titled((told,)))}, {by or 'as recorded'}")
     if item.suspension_length_m is not None and item.suspension_length_m > 0.5 * (item.height_m or 0.0):
-        note = "hanging: by a wire or cord, for it hangs from further above its centre than its upper edge is"
-        return HangingGuess((Hanging.WIRE,), Origin.DERIVED, note)
+        return HangingGuess((Hanging.WIRE,), Origin.DERIVED, say.HANGING_BY_CORD())
     usual = _usual(object_class, max(item.height_m or 0.0, item.width_m or 0.0))
-    note = f"hanging: {titled(usual.hangings)}; {NOT_RECORDED}"
+    note = f"{say.HANGING(ways=titled(usual.hangings))}; {say.HANGING_NOT_RECORDED()}"
     return HangingGuess(usual.hangings, Origin.ASSUMED, note, f"usual_hangings.csv ({usual.source})")
 
 
@@ -116,14 +114,12 @@ def _flag(guess: HangingGuess, column: str) -> Estimate:
     return Estimate(each[0], "-", guess.origin, min(each), max(each), guess.note, guess.source)
 
 
-def _of_table(ways: Sequence[Hanging], column: str, unit: str, times: float, what: str) -> Estimate:
+def _of_table(ways: Sequence[Hanging], column: str, unit: str, times: float, phrase: Clause) -> Estimate:
     spans = [hanging_rows()[way].range(column) for way in ways]
     low, best, high = (
         times * value for value in (min(s.low for s in spans), spans[0].value, max(s.high for s in spans))
     )
-    note = (
-        f"{what}: {best:.3g} ({low:.3g} to {high:.3g}){'' if unit == '-' else f' {unit}'}, assumed for {titled(ways)}"
-    )
+    note = phrase(span=(low, best, high), ways=titled(ways))
     return Estimate(best, unit, Origin.ASSUMED, low, high, note, f"hangings.csv ({spans[0].source})")
 
 
@@ -149,12 +145,11 @@ def hanging_estimates(item: Item, guess: HangingGuess) -> dict[str, Estimate]:
     lifted = [way for way in guess.ways if hanging_rows()[way].lifts_off]
     if lifted and item.height_m is not None:
         out["hooks_open"] = _flag(guess, "lifts_off")
-        out["hook_depth"] = _of_table(lifted, "hook_depth", "m", 1.0, "depth of its hooks")
-        what = "height of the hooks above its centre of gravity"
-        out["hook_height"] = _of_table(lifted, "hook_height", "m", item.height_m, what)
+        out["hook_depth"] = _of_table(lifted, "hook_depth", "m", 1.0, say.HOOK_DEPTH)
+        out["hook_height"] = _of_table(lifted, "hook_height", "m", item.height_m, say.HOOK_HEIGHT)
         out |= _plate(item, item.height_m)
-    out["hanger_strength"] = _of_table(guess.ways, "strength", "-", 1.0, "what its hangers bear, times its weight")
-    out["amplification"] = _of_table(guess.ways, "amplification", "-", 1.0, "its load by swing and slap")
+    out["hanger_strength"] = _of_table(guess.ways, "strength", "-", 1.0, say.HANGERS_BEAR)
+    out["amplification"] = _of_table(guess.ways, "amplification", "-", 1.0, say.SWING_AND_SLAP)
     return out
 
 
@@ -162,13 +157,13 @@ def _plate(item: Item, height: float) -> dict[str, Estimate]:
     """Return the body of a framed work as its hooks have it: a plate of even thickness."""
     depth = item.depth_m
     low, best, high = THIN if depth is None else (share * depth for share in OFFSET)
-    of = "depth not recorded" if depth is None else f"of its depth of {depth:g} m"
-    note = f"centre of gravity in front of its back: {best:.3g} ({low:.3g} to {high:.3g}) m, {of}, assumed"
+    offset = (low, best, high)
+    note = say.OFFSET(offset=offset) if depth is None else say.OFFSET_BY_DEPTH(offset=offset, depth=depth)
     gyration = sqrt((height**2 + (depth or 0.0) ** 2) / 12.0)
     least, rebound, most = REBOUND
-    kept = f"rebound from wall and hooks: {rebound:g} ({least:g} to {most:g}) of its speed, assumed"
+    kept = say.REBOUND(rebound=REBOUND)
     return {
         "hook_offset": Estimate(best, "m", Origin.ASSUMED, low, high, note, "judgement"),
-        "gyration": Estimate(gyration, "m", Origin.DERIVED, gyration, gyration, "radius of gyration: a plate"),
+        "gyration": Estimate(gyration, "m", Origin.DERIVED, gyration, gyration, say.GYRATION_OF_PLATE()),
         "restitution": Estimate(rebound, "-", Origin.ASSUMED, least, most, kept, "judgement"),
     }

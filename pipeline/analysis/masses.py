@@ -7,9 +7,13 @@ makes it lighter makes its critical section thinner too, so that one must not be
 from math import pi
 
 from pipeline.records import Estimate, Item, Origin
+from pipeline.records import phrases as say
 from pipeline.tables import Range
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.fill_rows import fills
+
+_FRAMED = (5.0, 15.0, 40.0)
+"""Mass of a square metre of a framed work [kg/m2], by judgement: low, best, high."""
 
 
 def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Estimate | None:
@@ -34,16 +38,16 @@ def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Est
     if item.mass_kg is not None:
         return Estimate.measured(item.mass_kg, "kg")
     if hung and item.height_m and item.width_m:
-        area = item.height_m * item.width_m
-        note = "mass: 15 kg (5 to 40 kg) for each square metre of a framed work, assumed"
-        return Estimate.assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
+        area, (low, best, high) = item.height_m * item.width_m, _FRAMED
+        note = say.MASS_OF_FRAMED(mass=_FRAMED)
+        return Estimate.assumed(best * area, low * area, high * area, "kg", note, "judgement")
     box, own = _outline(item, row), _metal_fill(row, material)
     fill = own or row.filled
     if fill is None or box is None:
         return None
     density = material.density_range
-    note = f"mass: {material.told} of {density.value:g} kg/m3 filling {fill.value:g} of its outline"
-    note += ", assumed for what is made of metal" if own else f"{row.aside}, assumed"
+    phrase = say.MASS_OF_METAL if own else say.MASS_OF_CLASS if row.aside else say.MASS
+    note = phrase(material=material.told, density=density.value, fill=fill.value, aside=row.aside.strip(" ()"))
     low, high = box * fill.low * density.low, box * fill.high * density.high
     return Estimate.assumed(box * fill.value * density.value, low, high, "kg", note, density.source)
 
@@ -65,8 +69,7 @@ def solid_mass(item: Item, row: ObjectClass, material: Material) -> Estimate | N
     if item.section_width_m is not None or box is None or filled is None or _metal_fill(row, material) is None:
         return None
     mass = box * filled.value * material.density_range.value
-    note = f"section: taken as solid from {mass:.2g} kg on and as hollow below, its area with its mass: it is of metal"
-    return Estimate(mass, "kg", Origin.ASSUMED, mass, mass, note, "judgement")
+    return Estimate(mass, "kg", Origin.ASSUMED, mass, mass, say.SOLID(mass=mass), "judgement")
 
 
 def _outline(item: Item, row: ObjectClass) -> float | None:

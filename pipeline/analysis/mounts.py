@@ -13,6 +13,7 @@ from pipeline.analysis.house.matching import MOUNTED_BY
 from pipeline.analysis.section import share_of
 from pipeline.analysis.sizes import SIZES, Sizes, sizes_known
 from pipeline.records import Estimate, Item, Mount, Origin
+from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
 from pipeline.tables.mount_rows import MountRow, mount_rows
 
@@ -87,7 +88,7 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect) -> MountGuess | N
     usual = next((one for one in rows.values() if one.kind == row.name), rows[Mount.UNKNOWN])
     if usual.mount is Mount.LYING and _bulky(item):
         usual = rows[Mount.STANDING]
-    note = f"mount: it {usual.title}, assumed for: {row.told}; not recorded"
+    note = f"{say.MOUNT(mount=usual.title, told=row.told)}; {say.NOT_RECORDED()}"
     return MountGuess(usual, Origin.ASSUMED, note)
 
 
@@ -119,13 +120,10 @@ def mount_estimates(guess: MountGuess, row: ObjectClass, sizes: Sizes) -> Mappin
     told = guess.row
     grip, room, lean = (told.range(name) for name in ("grip", "room", "lean"))
     if grip is not None:
-        note = f"grip of its mount: {grip.value:g} ({grip.low:g} to {grip.high:g}) times its weight sideways"
-        out["friction_static"] = Estimate.assumed(
-            grip.value, grip.low, grip.high, "-", f"{note}, assumed: it {told.title}", grip.source
-        )
+        note = say.GRIP(grip=grip, mount=told.title)
+        out["friction_static"] = Estimate.assumed(grip.value, grip.low, grip.high, "-", note, grip.source)
     if room is not None:
-        low, value, high = (100.0 * one for one in (room.low, room.value, room.high))
-        note = f"clearance: it comes off its mount once it has moved {value:g} cm ({low:g} to {high:g}) on it, assumed"
+        note = say.OFF_ITS_MOUNT(room=room)
         out["clearance"] = Estimate.assumed(room.value, room.low, room.high, "m", note, room.source)
     known = {name: getattr(sizes.filled, f"{name}_m") for name in SIZES}
     if lean is not None:
@@ -153,10 +151,10 @@ def _leaning(
     sizes: Sizes, long: str, half: float, angles: tuple[float, float, float], source: str
 ) -> dict[str, Estimate]:
     low, best, high = angles
-    note = f"it leans {best:g} ({low:g} to {high:g}) degrees from upright, assumed"
+    note = say.LEANS(lean=angles)
     wide, least, most = (half * sin(radians(angle)) for angle in (best, low, high))
     tall = half * cos(radians(best))
-    cg = Estimate(tall, "m", Origin.DERIVED, tall, tall, f"height of the centre of gravity: it leans on its {long}")
+    cg = Estimate(tall, "m", Origin.DERIVED, tall, tall, say.LEANS_ON(size=long))
     return {
         "half_width": sizes.spread(Estimate.assumed(wide, least, most, "m", note, source), (long,)),
         "cg_height": sizes.spread(cg, (long,)),

@@ -6,10 +6,11 @@ from math import pi
 
 from pipeline.errors import InputError
 from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin
+from pipeline.records import phrases as say
 from pipeline.tables import Range
 from pipeline.tables.assumed_rows import ObjectClass
 
-_OF_CLASS = {"stem": ("round", 1), "ankles": ("round", 2), "foot": ("rectangle", 1), "legs": ("rectangle", 4)}
+OF_CLASS = {"stem": ("round", 1), "ankles": ("round", 2), "foot": ("rectangle", 1), "legs": ("rectangle", 4)}
 """Shape and number of the sections that classes.csv names."""
 
 
@@ -102,10 +103,10 @@ def section_of(item: Item, row: ObjectClass, width: Estimate | None, depth: Esti
         if shape == "hollow round" and item.section_wall_m is None:
             missing.append("wall of its weakest section")
         elif shape:
-            note = f"section: {item.section_shape or shape}, as recorded"
+            note = say.SECTION_RECORDED(shape=item.section_shape or shape)
             return KnownSection(Section(shape, size, deep, item.section_count or 1, item.section_wall_m or 0.0, note))
         else:
-            doubts.append(f"section: the recorded shape {item.section_shape!r} is not known, and not used")
+            doubts.append(say.SECTION_UNKNOWN(shape=repr(item.section_shape)))
     if row.critical is None or width is None or depth is None:
         return KnownSection(None, missing, doubts)
     narrow = min(width, depth, key=lambda e: e.value)
@@ -121,13 +122,13 @@ def section_of(item: Item, row: ObjectClass, width: Estimate | None, depth: Esti
     if kind == "ring":
         # The size is the wall; the ring's outside is the base.
         return KnownSection(Section("ring", size, narrow, 1, narrow.value, size.note), missing, doubts)
-    shape, count = _OF_CLASS[kind]
+    shape, count = OF_CLASS[kind]
     return KnownSection(Section(shape, size, size, count, 0.0, size.note), missing, doubts)
 
 
 def share_of(row: ObjectClass, share: Range, base: float, unit: str, what: str, of: str) -> Estimate:
     """Return a share of a recorded dimension, as the row of the class assumes it."""
-    note = f"{what}: {share.value:g} ({share.low:g} to {share.high:g}) of its {of}, assumed for: {row.told}"
+    note = say.SHARE(what=what, share=share, of=of, told=row.told)
     low, value, high = share.low * base, share.value * base, share.high * base
     return Estimate(value, unit, Origin.ASSUMED, low, high, note, share.source)
 

@@ -7,6 +7,7 @@ from functools import cached_property
 from math import exp, hypot, log
 
 from pipeline.records import Estimate, Item, Origin
+from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
 from pipeline.tables.proportion_rows import proportions
 
@@ -45,10 +46,8 @@ def ratio_of(row: ObjectClass, size: str, known: Mapping[str, float]) -> Estimat
     for one in proportions().get((row.name, size), ()):
         if one.of in of and len(known) >= one.known:
             best, low, high = (times * known[one.of] for times in (one.value, one.low, one.high))
-            note = f"{size} not recorded: {one.value:g} ({one.low:g} to {one.high:g}) of its {one.of}, as is usual"
-            return Estimate.assumed(
-                best, low, high, "m", f"{note}, assumed for: {row.told}", f"proportions.csv ({one.source})"
-            )
+            note = say.SIZE(size=size, share=one, of=one.of, told=row.told)
+            return Estimate.assumed(best, low, high, "m", note, f"proportions.csv ({one.source})")
     return None
 
 

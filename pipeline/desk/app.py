@@ -2,11 +2,13 @@
 
 import logging
 import secrets
+from asyncio import get_running_loop
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from anyio import CapacityLimiter, to_thread
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import UploadFile
@@ -34,7 +36,7 @@ from pipeline.desk.guard import (
     person,
 )
 from pipeline.desk.kept_pages import KeptPages
-from pipeline.desk.site import AT_ONCE, DeskSite
+from pipeline.desk.site import AT_ONCE, DeskSite, DeskState
 from pipeline.errors import KourosError
 from pipeline.operations.event_log import note
 from pipeline.report.language import speaking
@@ -121,7 +123,7 @@ def desk_app(config: Path, serving: ServeSettings | None = None) -> Guard:
         Route("/sign-out", pages.sign_out, methods=["POST"]),
     ]
     handlers: Any = {404: pages.lost, 405: pages.lost, BodyTooLongError: pages.too_long, Exception: pages.broken}
-    return Guard(Starlette(routes=routes, exception_handlers=handlers), pages.site.serving, pages.site.close)
+    return Guard(Starlette(routes=routes, exception_handlers=handlers), pages.site.serving, pages.close)
 
 
 class _Pages:
@@ -130,8 +132,14 @@ class _Pages:
     def __init__(self, site: DeskSite) -> None:
         self.site = site
         self._attempts = Attempts()
-        self._filled = CapacityLimiter(AT_ONCE)
+        # Of its own, and by asyncio itself: what Starlette waits by costs a tenth of a page that is kept.
+        self._fillers = ThreadPoolExecutor(AT_ONCE, "page")
         self._kept = KeptPages(_KEPT_CHARACTERS)
+
+    def close(self) -> None:
+        """End what is filled in, and close the connections of the site."""
+        self._fillers.shutdown(wait=False, cancel_futures=True)
+        self.site.close()
 
     def looking(self, page: Page) -> Callable[[Request], Any]:
         """Return what answers with a page that only shows."""
@@ -145,7 +153,7 @@ class _Pages:
             return self._answered(request, asked, page, kept=page in _KEPT)
 
         async def waiting(request: Request) -> Response:
-            return await to_thread.run_sync(answer, request, limiter=self._filled)
+            return await get_running_loop().run_in_executor(self._fillers, answer, request)
 
         return waiting
 
@@ -177,16 +185,20 @@ class _Pages:
     def _answered(self, request: Request, asked: Asked, page: Page, *, kept: bool = False) -> Response:
         try:
             state = self.site.state if kept else None
+            if state is None:
+                self.site.look()
             key = (page, tuple(asked.query.items()), asked.fragment, asked.who)
             known = self._kept.get(state, key) if kept else None
             if known is not None:
                 return self._with_token(request, asked.who, known, 200)
+            if state is not None:
+                asked = replace(asked, newest=state.newest)
             with speaking(self.site.run.language):
                 answer = page(asked)
                 if answer.to:
                     note("desk", who=asked.name, path=request.url.path, object=asked.form.get("number", ""))
                     return self._remembered(RedirectResponse(answer.to, 303), asked)
-                text = self._filled_in(request, asked.who, answer)
+                text = self._filled_in(request, asked.who, answer, state)
             if kept:
                 self._kept.keep(state, key, text)
             return self._with_token(request, asked.who, text, answer.status)
@@ -199,7 +211,9 @@ class _Pages:
     def _page(self, request: Request, who: Person | None, answer: DeskAnswer) -> Response:
         return self._with_token(request, who, self._filled_in(request, who, answer), answer.status)
 
-    def _filled_in(self, request: Request, who: Person | None, answer: DeskAnswer) -> str:
+    def _filled_in(
+        self, request: Request, who: Person | None, answer: DeskAnswer, state: DeskState | None = None
+    ) -> str:
         site = self.site
         env = getattr(site, "environment", None) or environment()
         context: dict[str, Any] = {
@@ -208,7 +222,7 @@ class _Pages:
             "saved": "", "run": None, "shaken": False,
         }  # fmt: skip
         if answer.template not in ("sign_in.html", "told.html"):
-            context |= {"run": site.run, "shaken": site.events.there}
+            context |= {"run": site.run, "shaken": site.events.there if state is None else state.shaken}
         return fill(env, f"desk/{answer.template}", context | dict(answer.context))
 
     def _with_token(self, request: Request, who: Person | None, text: str, status: int) -> Response:
@@ -267,7 +281,7 @@ class _Pages:
         who = person(request, self.site.serving, self.site.workspace.engine)
         if who is None:
             return self._unknown(request)
-        name, folder = request.path_params["name"], self.site.run.folder
+        name, folder = request.path_params["name"], self.site.look().folder
         ending = Path(name).suffix
         # Only names that the folder itself has: none with a slash, none that leads elsewhere, none that is hidden.
         if ending not in _REPORT_KINDS or name.startswith(".") or name not in {f.name for f in folder.iterdir()}:
@@ -308,7 +322,7 @@ class _Pages:
         whose = (f"name {name[:100].casefold()}", f"from {request.client.host if request.client else ''}")
         wait = self._attempts.wait(*whose)
         if wait:
-            words = f"Too many attempts: try again in {wait / 60.0:.0f} min."
+            words = f"Too many attempts: try again in {wait / 60.0:.0f}\u00a0min."
             again = DeskAnswer("sign_in.html", {"name": name, "problem": words}, 429)
             return await run_in_threadpool(self._page, request, None, again)
         token = await run_in_threadpool(

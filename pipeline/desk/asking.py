@@ -27,6 +27,8 @@ class Asked:
         The photograph that was sent; empty for none.
     fragment : bool
         Whether only a part of the page is wanted (htmx).
+    newest : tuple of int or None
+        The newest ids of what people said when it was asked; None where nobody looked.
     """
 
     site: DeskSite
@@ -36,6 +38,7 @@ class Asked:
     lists: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     upload: bytes = b""
     fragment: bool = False
+    newest: tuple[int, ...] | None = None
 
     @property
     def name(self) -> str:

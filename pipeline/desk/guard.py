@@ -42,6 +42,12 @@ _HEADERS = {
     "X-Frame-Options": "DENY",
 }
 
+_ADDED = tuple(
+    (name.lower().encode(), text.encode())
+    for name, text in (*_HEADERS.items(), ("Content-Security-Policy", POLICY), ("Cache-Control", "no-store"))
+)
+"""As they are sent."""
+
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
@@ -128,11 +134,7 @@ class Guard:
         async def headed(message: MutableMapping[str, Any]) -> None:
             if message["type"] == "http.response.start":
                 there = {name.lower() for name, _ in message["headers"]}
-                added = _HEADERS | {"Content-Security-Policy": POLICY, "Cache-Control": "no-store"}
-                message["headers"] = [
-                    *message["headers"],
-                    *((k.lower().encode(), v.encode()) for k, v in added.items() if k.lower().encode() not in there),
-                ]
+                message["headers"] = [*message["headers"], *(one for one in _ADDED if one[0] not in there)]
             await send(message)
 
         await app(scope, receive, headed)

@@ -17,7 +17,7 @@ from pipeline.desk.errors import NotThereError
 from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.object_facts import ObjectFacts, cells, vocabulary
 from pipeline.desk.run_facts import SHOWN, ListedObject, RunFacts
-from pipeline.desk.words import STATED, lasting, name_told, stated_told, word_told
+from pipeline.desk.words import lasting, name_told
 from pipeline.planning.efforts import EffortSpan
 from pipeline.quantities import sorting_key
 from pipeline.records import DecisionKind, Support, in_force
@@ -25,6 +25,7 @@ from pipeline.report.language import _, said
 from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.errand_views import priced, spanned, title_of, trade_word
+from pipeline.report.pages.house_words import STATED, stated_told, word_told
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.views import STATES, DecisionView, State
 from pipeline.report.units import Units
@@ -70,8 +71,8 @@ def search(asked: Asked) -> DeskAnswer:
     found = list(islice(hits, SHOWN * (page - 1), SHOWN * page + 1))
     context = {
         "found": found[:SHOWN], "more": len(found) > SHOWN, "page": page, "q": words, "gallery": gallery,
-        "state": state, "galleries": sorted(run.galleries, key=sorting_key), "total": len(run.objects),
-        "states": run.states, "asked": narrowed,
+        "state": state, "galleries": run.gallery_names, "total": len(run.objects),
+        "states": run.states, "asked": narrowed, "fragment": asked.site.fragment,
     }  # fmt: skip
     return DeskAnswer("found.html" if asked.fragment else "search.html", context)
 
@@ -88,7 +89,7 @@ def object_context(
 
     section : which form is open
     """
-    facts, run = asked.site.facts(object_number), asked.site.run
+    facts, run = asked.site.facts(object_number, asked.newest), asked.site.run
     listed = run.by_number.get(object_number)
     query, typed = asked.query, dict(typed or {})
     installable = asked.site.workspace.measures.installable
@@ -339,7 +340,7 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
         "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house],
         "classes": sorted(run.classes, key=class_title), "class_told": class_title, "word_told": word_told,
         "counts": run.classes,
-        "galleries": sorted(run.galleries, key=sorting_key), "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
+        "galleries": run.gallery_names, "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
         "stated": {name: stated_told(name) for name in STATED}, "states": states,
         "unit": cell_unit(QUANTITIES[states][0], run.units) if states in QUANTITIES else "",
         "supports": tuple(Support), "about": len(about), "typed": given, "problem": problem,

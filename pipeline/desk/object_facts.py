@@ -25,9 +25,10 @@ from pipeline.records import (
     in_force,
 )
 from pipeline.report.language import said, speaking
-from pipeline.report.pages.compose import compose
+from pipeline.report.pages.compose import page_name
+from pipeline.report.pages.describe import Describer
 from pipeline.report.pages.museum_views import GalleryView
-from pipeline.report.pages.views import ObjectView
+from pipeline.report.pages.views import ObjectView, PageView, StateCounts
 from pipeline.report.units import Units
 from pipeline.store.desk import Picture, pictures_of
 from pipeline.store.pages import load_one
@@ -98,7 +99,7 @@ class ObjectDesk:
         self._kept: OrderedDict[tuple[object, ...], _InWords] = OrderedDict()
         self._lock = Lock()
 
-    def facts(self, run: RunFacts, number: str, log: tuple[Decision, ...]) -> ObjectFacts:
+    def facts(self, run: RunFacts, number: str, log: tuple[Decision, ...], *, pictured: bool = True) -> ObjectFacts:
         """Return an object.
 
         Parameters
@@ -109,6 +110,8 @@ class ObjectDesk:
             The museum's.
         log : tuple of Decision
             All decisions about it, by id.
+        pictured : bool
+            Whether there are photographs of mounts at all.
 
         Raises
         ------
@@ -119,7 +122,7 @@ class ObjectDesk:
         item = items_named(engine, [number]).get(number)
         if item is None:
             raise NotThereError(f"there is no object {number[:60]!r} in the inventory; search for it")
-        pictures, mine = pictures_of(engine, number), in_force(log)
+        pictures, mine = pictures_of(engine, number) if pictured else (), in_force(log)
         digest = digest_of(item)
         version = hashlib.sha256(
             json.dumps([digest, [d.id for d in log], [p.id for p in pictures]]).encode()
@@ -145,11 +148,22 @@ class ObjectDesk:
     @staticmethod
     def _in_words(run: RunFacts, page: Page, found: Found, standings: tuple[DecisionStatus, ...]) -> _InWords:
         record = replace(run.head, assessments=found.assessments, wishes=found.wishes, spacings=(), decisions=standings)
+        file = page_name(page.gallery, page.number, on_display=page.on_display)
         with speaking(run.language):
-            made = compose(record, page, run.units, run.sayings, several=run.several)
-        # Charts are on the report's own page, which is a link away.
-        view = replace(made.gallery.objects[0], figures=())
-        gallery = replace(made.gallery, objects=(view,))
+            told = Describer(record, run.units, run.sayings).object(found.assessments[0], file)
+        # Charts are on the report's own page, which is a link away; of its gallery nothing else is shown here.
+        view = replace(told, figures=())
+        gallery = GalleryView(
+            name=page.gallery if page.on_display else "",
+            page=PageView(file, page.number, page.of),
+            on_display=page.on_display,
+            counts=StateCounts(),
+            tasks=(),
+            objects=(view,),
+            charts=(),
+            motions=tuple(dict.fromkeys(f.motion for f in view.findings)),
+            several_levels=run.several,
+        )
         return view, gallery, found.assessments[0], found.wishes or ()
 
 

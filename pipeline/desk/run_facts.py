@@ -96,9 +96,10 @@ class RunFacts:
         self.by_number = {one.number: one for one in rows}
         self.galleries = Counter(one.gallery for one in rows if one.on_display)
         self.classes = Counter(one.object_class for one in rows if one.on_display)
+        # Now, and not by the first four who search at once.
+        self._searched = self._words()
 
-    @cached_property
-    def _searched(self) -> tuple[str, list[int]]:
+    def _words(self) -> tuple[str, list[int]]:
         """The words of all objects, a line each, and where each line begins."""
         lines = [folded(f"{o.number} {o.title} {o.gallery}") for o in self.objects]
         starts, at = [], 1
@@ -151,6 +152,11 @@ class RunFacts:
     def class_titles(self) -> tuple[tuple[str, str], ...]:
         """All classes of objects with what people call them, in the order of that."""
         return tuple(sorted(((name, class_title(name)) for name in object_classes()), key=itemgetter(1)))
+
+    @cached_property
+    def gallery_names(self) -> tuple[str, ...]:
+        """The galleries as people list them."""
+        return tuple(sorted(self.galleries, key=sorting_key))
 
     @cached_property
     def states(self) -> Counter[str]:

@@ -4,6 +4,7 @@ import logging
 import time
 from pathlib import Path
 from threading import Lock
+from typing import NamedTuple
 
 from pipeline.desk.event_facts import EventDesk
 from pipeline.desk.object_facts import ObjectDesk, ObjectFacts
@@ -24,6 +25,15 @@ AT_ONCE = 4
 
 LOOK = 2.0
 """Seconds after which it is looked whether there is a newer run."""
+
+
+class DeskState(NamedTuple):
+    """What pages rest on: the run, when the settings changed, the newest ids of what people said, earthquakes."""
+
+    run_id: str
+    changed: int
+    newest: tuple[int, ...]
+    shaken: bool
 
 
 class DeskSite:
@@ -57,7 +67,17 @@ class DeskSite:
 
     @property
     def run(self) -> RunFacts:
-        """The newest run, and the settings of now.
+        """The newest run as of the last look (`look`): every page looks once before anything of it is filled in.
+
+        Raises
+        ------
+        DeskError
+            Where there is none.
+        """
+        return self._run or self.look()
+
+    def look(self) -> RunFacts:
+        """Look whether there is a newer run or the settings changed; return the newest run.
 
         Raises
         ------
@@ -82,7 +102,7 @@ class DeskSite:
             return self._run
 
     @property
-    def state(self) -> tuple[object, ...]:
+    def state(self) -> DeskState:
         """What all pages but those of earthquakes rest on: where it is as before, they say the same as before.
 
         Raises
@@ -90,16 +110,23 @@ class DeskSite:
         DeskError
             Where there is no run.
         """
-        return self.run.run_id, self._changed, newest_ids(self.workspace.engine), self.events.there
+        run = self.look()
+        return DeskState(run.run_id, self._changed, newest_ids(self.workspace.engine), self.events.there)
 
-    def _renew(self) -> None:
-        ids = newest_ids(self.workspace.engine)[:2]
+    def _renew(self, newest: tuple[int, ...] | None = None) -> tuple[int, ...]:
+        """Read decisions and words anew where there are newer ones; return the newest ids.
+
+        newest : the newest ids, where somebody has just asked for them
+        """
+        newest = newest or newest_ids(self.workspace.engine)
+        ids = newest[:2]
         with self._lock:
             if ids != self._read:
                 found: dict[str, tuple[Decision, ...]] = {}
                 for one in read_decisions(self.workspace.engine):
                     found[one.object_number] = (*found.get(one.object_number, ()), one)
                 self._log, self._words, self._read = found, errand_words(self.workspace.engine), ids
+        return newest
 
     def log(self, number: str) -> tuple[Decision, ...]:
         """Return all decisions about an object, by id."""
@@ -112,12 +139,20 @@ class DeskSite:
         self._renew()
         return self._words
 
-    def facts(self, number: str) -> ObjectFacts:
+    def facts(self, number: str, newest: tuple[int, ...] | None = None) -> ObjectFacts:
         """Return an object.
+
+        Parameters
+        ----------
+        number : str
+            The museum's.
+        newest : tuple of int, optional
+            The newest ids of what people said (`newest_ids`), where somebody has just asked for them.
 
         Raises
         ------
         NotThereError
             Where there is none of that number.
         """
-        return self.objects.facts(self.run, number, self.log(number))
+        run, newest = self.run, self._renew(newest)
+        return self.objects.facts(run, number, self._log.get(number, ()), pictured=newest[2] > 0)

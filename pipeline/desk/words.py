@@ -1,73 +1,23 @@
-"""Words of rules and records as the desk says them: by the titles of their tables, in the reader's language."""
+"""Words of the desk: how long something takes, and names of fields as labels."""
 
-from collections.abc import Callable, Mapping
-from functools import cache
-
-from pipeline.report.language import _, local, said
+from pipeline.report.language import _, local
 from pipeline.report.text import words
-from pipeline.tables import table
-
-_TABLES = {"hanging": "hangings", "furniture": "furniture", "mount": "mounts"}
-"""Field or statement of a rule -> the table whose rows it names."""
-
-
-# Looked up in the language of the page.
-STATED: Mapping[str, Callable[[], str]] = {
-    "hanging": lambda: _("how they hang"),
-    "furniture": lambda: _("what they stand on or in"),
-    "furniture_anchorage": lambda: _("whether that is fastened"),
-    "held": lambda: _("how they are held"),
-    "mount": lambda: _("how their mount holds them"),
-    "friction": lambda: _("friction under them"),
-    "clearance_m": lambda: _("free distance around them"),
-    "cg_height_m": lambda: _("height of the centre of gravity"),
-    "cg_ratio": lambda: _("height of the centre of gravity as a share of the object's height"),
-    "base_ratio": lambda: _("footing as a share of the width"),
-    "suspension_length_m": lambda: _("from hook to centre of gravity"),
-    "suspension_ratio": lambda: _("from hook to centre of gravity as a share of the object's height"),
-    "damping": lambda: _("damping ratio"),
-    "frequency_hz": lambda: _("natural frequency"),
-}
-"""What a house rule may state, what people know without an instrument first."""
-
-
-def stated_told(name: str) -> str:
-    """Return what a house rule states, as the page that asks for it says it."""
-    return STATED[name]() if name in STATED else words(name)
 
 
 def lasting(minutes: float) -> str:
     """Return how long something takes, in hours where it is more than one and a half."""
     if minutes <= _LONG:
-        return _("%(minutes)s min") % {"minutes": f"{minutes:.0f}"}
+        return _("%(minutes)s\u00a0min") % {"minutes": f"{minutes:.0f}"}
     hours = minutes / 60.0
-    return _("%(hours)s h") % {"hours": local(f"{hours:.1f}".removesuffix(".0") if hours < _MANY else f"{hours:.0f}")}
+    return _("%(hours)s\u00a0h") % {
+        "hours": local(f"{hours:.1f}".removesuffix(".0") if hours < _MANY else f"{hours:.0f}")
+    }
 
 
 _LONG, _MANY = 90.0, 5.0
-
-
-def word_told(field: str, word: str) -> str:
-    """Return a word that a field may hold, or a rule may state, as people say it.
-
-    Parameters
-    ----------
-    field : str
-        Such as "hanging".
-    word : str
-        Such as "two_hooks".
-    """
-    title = _titles(field).get(str(word))
-    return said(title) if title else words(str(word))
 
 
 def name_told(name: str) -> str:
     """Return the name of a field as a label."""
     told = words(name)
     return told[:1].upper() + told[1:]
-
-
-@cache
-def _titles(field: str) -> dict[str, str]:
-    listed = _TABLES.get(field)
-    return {row[field]: row["title"] for row in table(listed)} if listed else {}

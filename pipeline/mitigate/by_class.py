@@ -14,7 +14,7 @@ from pipeline.mitigate.search import ANCHORED
 from pipeline.mitigate.trials import HarmAim, most_sampled
 from pipeline.records import Recommendation, Scene
 
-NAMED_FIRST = "Say first what it is (kouros decide): for another class that is possible this is not enough."
+NAMED_FIRST = "Say first what it is: for another class that is possible this is not enough."
 """Follows the sentence of a measure that is enough for the class that an object is taken for, and not for all."""
 
 

@@ -7,7 +7,9 @@ from pipeline.analysis.verdicts import capacity_of
 from pipeline.mitigate.proposals import Candidate
 from pipeline.mitigate.trials import Trial
 from pipeline.models import model_named
+from pipeline.models.common import N_
 from pipeline.records import Check, Finding, Likelihood, Scene, Verdict
+from pipeline.records import phrases as say
 
 TIGHT = 0.1
 """Share of a demand within which a bound of it says as much as the demand."""
@@ -54,20 +56,20 @@ def why_not(scene: Scene, findings: Sequence[Finding]) -> str:
     """Say in words what a trial still fails by: the worst of what its uncertain inputs give, against its capacity."""
     worst = [(_worst(scene, finding), finding) for finding in findings if finding.verdict is not Verdict.PASS]
     if not worst:
-        return "none of its models can be run then"
+        return N_("none of its models can be run then")
     times, finding = max(worst, key=lambda pair: pair[0])
     error, demand = finding.error or 0.0, finding.demand or 0.0
     if finding.low == finding.high and finding.utilisation is not None and not isinf(finding.utilisation):
-        return f"{finding.title.lower()} reaches {finding.utilisation:.2g} times what is allowed by the best estimates"
+        return say.REACHES(check=finding.title.lower(), times=finding.utilisation)
     if finding.fidelity == "bound" and error and (isinf(error) or error > TIGHT * demand):
-        return f"{finding.title.lower()} may still be more than is allowed"
+        return say.MAY_BE_MORE(check=finding.title.lower())
     if finding.high is not None and isinf(finding.high):
-        return f"nothing limits {finding.title.lower()} then"
+        return say.NOTHING_LIMITS(check=finding.title.lower())
     if times == float("inf"):
-        return f"nothing would be left of what {finding.title.lower()} is allowed"
+        return say.NOTHING_LEFT(check=finding.title.lower())
     best = finding.utilisation or 0.0
-    sure = f", {best:.2g} times by the best estimates" if times > 1.05 * best else ""
-    return f"{finding.title.lower()} may still reach {times:.2g} times what is allowed{sure}"
+    phrase = say.MAY_REACH_AND_DOES if times > 1.05 * best else say.MAY_REACH
+    return phrase(check=finding.title.lower(), times=times, best=best)
 
 
 def _worst(scene: Scene, finding: Finding) -> float:
@@ -88,7 +90,7 @@ def shortfall(
     if failing:
         remains = [one.expected for one in left.get(id(failing[0]), {}).values()]
         if remains:
-            return f"harm would remain with a probability of {100.0 * max(remains):.0f} %"
+            return say.HARM_REMAINS(chance=max(remains))
         return why_not(failing[0].scene, results[id(failing[0])])
     short: list[Check] = [check for _, check in candidate.checks if not check.passes]
-    return f"{short[0].title.lower()} is not enough" if short else ""
+    return say.NOT_ENOUGH(check=short[0].title.lower()) if short else ""

@@ -30,6 +30,7 @@ from pipeline.mitigate.proposals import (
     refused,
 )
 from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 from pipeline.tables.mount_rows import mount_rows
@@ -280,11 +281,11 @@ class _Search:
     def _proposed(self, unit: Unit, measure: Measure) -> Proposal:
         mounts = [one.scene.mount for one in unit if one.wanted]
         if not any(mount is None or measure.name in mount_rows()[mount].measures for mount in mounts):
-            return refused("it is not for what lies or is held as this is")
+            return refused(N_("it is not for what lies or is held as this is"))
         if measure.isolator and any(_band_unknown(one.scene) for one in unit):
             return UNKNOWN_FREQUENCY
         if measure.isolator and any(may_fall(one.findings) for one in unit):
-            return refused("what it would stand in is not fastened and may fall")
+            return refused(N_("what it would stand in is not fastened and may fall"))
         return measure.propose_shared(unit, self.runner) if measure.shared else measure.propose(unit[0], self.runner)
 
     def settles(self) -> None:
@@ -310,7 +311,7 @@ class _Search:
         for unit, proposal, candidates in units:
             candidate = next(candidates, None)
             if candidate is None and proposal is not UNCONCERNED:
-                self._reject(unit, measure, proposal.reason or last.get(unit, "not enough"))
+                self._reject(unit, measure, proposal.reason or last.get(unit, N_("not enough")))
             elif candidate is not None:
                 asked.append((unit, proposal, candidates, candidate))
         every = [trial for *_, candidate in asked for trial in candidate.every]

@@ -38,7 +38,7 @@ from pipeline.report import Units
 from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
-from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, TABLES
+from pipeline.store.reuse import CODE, DISPLAY, HOUSE, HOUSE_RULES, KERNELS, LEVELS, RULES, TABLES
 from pipeline.verification import selftest, tradeoff
 
 FRAGILE, SURVEYED = 1e8, 2e8
@@ -218,6 +218,7 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
         RULES: rules_digest(settings),
         TABLES: tables_digest(settings),
         HOUSE: house_digest(settings),
+        HOUSE_RULES: [rule.told() for rule in settings.house],
         LEVELS: {level.name: level.combine for level in site.levels},
         PERIODS: {level.name: level.return_period_years for level in site.levels},
         "credit": credit,

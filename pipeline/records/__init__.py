@@ -19,7 +19,7 @@ from pipeline.records.likelihood import Band, Harm, IfClass, Likelihood, Samplin
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figure, Model, Trials
 from pipeline.records.motion import Excitation, Motion, MotionSummary
-from pipeline.records.news import Brief, NewsKind, ObjectChange, Settled
+from pipeline.records.news import Brief, NewsKind, ObjectChange, Ruled, Settled
 from pipeline.records.numerics import Numerics
 from pipeline.records.part import Errors, Found, Outline, Page, Result, Tally, Urgency, Urgent
 from pipeline.records.photo import Photo
@@ -109,6 +109,7 @@ __all__ = [
     "Provenance",
     "Recommendation",
     "Result",
+    "Ruled",
     "RunChanges",
     "RunRecord",
     "Sampling",

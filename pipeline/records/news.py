@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from pipeline.records.decision import Decision
@@ -67,6 +68,8 @@ class Settled:
         The `DecisionKind`, and the row of tables/classes.csv that it says the object is; "" where not known, or none.
     about : str
         What follows of the matter: which finding it is about, a product, its last day.
+    date : str
+        The day it was made (ISO 8601); "" where not known.
     """
 
     new: bool
@@ -76,12 +79,37 @@ class Settled:
     kind: str = ""
     object_class: str = ""
     about: str = ""
+    date: str = ""
 
     @classmethod
     def of(cls, decision: Decision, *, new: bool) -> Settled:
         """Return a decision as news tells it."""
-        named = (decision.kind.value, decision.object_class, decision.about)
+        named = (decision.kind.value, decision.object_class, decision.about, decision.date)
         return cls(new, decision.measure, decision.matter, decision.who, *named)
+
+
+@dataclass(frozen=True, slots=True)
+class Ruled:
+    """A house rule of which something is new for an object, or holds for it no longer.
+
+    Attributes
+    ----------
+    new : bool
+        Whether it is new.
+    who, date : str
+        Who says so, and when (ISO 8601).
+    classes, about : tuple of str
+        What it is for: rows of tables/classes.csv, and the museum's own galleries, numbers and materials.
+    states : mapping of str to str
+        What it states, by the keys of kouros.toml; "" for what is a number.
+    """
+
+    new: bool
+    who: str
+    date: str
+    classes: tuple[str, ...] = ()
+    about: tuple[str, ...] = ()
+    states: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +130,8 @@ class ObjectChange:
         Decisions about it that were made or ended.
     fields : tuple of str
         Fields of its record that changed.
+    ruled : tuple of Ruled
+        House rules that are new for it, or hold for it no longer.
     """
 
     object_number: str
@@ -113,6 +143,7 @@ class ObjectChange:
     recorded: bool = True
     decided: tuple[Settled, ...] = ()
     fields: tuple[str, ...] = ()
+    ruled: tuple[Ruled, ...] = ()
 
     @property
     def installed(self) -> tuple[str, ...]:

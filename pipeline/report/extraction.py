@@ -7,7 +7,9 @@ from io import TextIOWrapper
 from typing import IO
 
 from pipeline.analysis.classify import object_classes
-from pipeline.analysis.furniture import DAMPING, FREQUENCY, LEVEL_ERROR
+from pipeline.analysis.furniture import DAMPING, FREQUENCY, LEVEL_ERROR, WHAT_HANGS
+from pipeline.analysis.section import OF_CLASS
+from pipeline.analysis.sizes import SIZES
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.fixing_rows import fixing_strengths
@@ -20,6 +22,7 @@ from pipeline.mitigate.search import ANCHORED, AT_BEST, ONLY_HERE, SIZED
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import Anchorage, Item, Support
+from pipeline.records.phrases import PHRASES
 from pipeline.report.text import bare
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed
@@ -54,7 +57,7 @@ def run_phrases(
 
     Named in babel.cfg for the registry of the models.
     """
-    for phrase in dict.fromkeys((*_of_models(), *_of_measures(), *_names())):
+    for phrase in dict.fromkeys((*_of_models(), *_of_measures(), *_of_assumptions(), *_names())):
         if phrase:
             yield 1, "_", phrase, []
 
@@ -79,6 +82,21 @@ def _of_measures() -> Iterator[str]:
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
     yield from (ONLY_HERE, AT_BEST, SIZED, ANCHORED, NAMED_FIRST, *(row.care for row in fixing_strengths().values()))
+
+
+def _of_assumptions() -> Iterator[str]:
+    """Yield the phrases of what is assumed, and what may stand in their places."""
+    yield from (phrase.asked for phrase in PHRASES)
+    yield from (row["title"] for row in table("contacts"))
+    yield from assumed().materials
+    pairs = ((row.object_material, row.surface_material) for row in assumed().friction)
+    backs = ((row.back_surface, row.wall_surface) for row in assumed().damping)
+    yield from (name.lower() for pair in (*pairs, *backs) for name in pair)
+    yield from ("any material", "any floor", "its back", "the wall", "what stands", *WHAT_HANGS.values())
+    yield from (f"critical section ({kind})" for kind in OF_CLASS)
+    yield from ("wall of its foot", "narrower side", "narrower base side", "half width of what it lies on")
+    yield from (f"smallest size, its {size}" for size in SIZES)
+    yield from ("section", "base", "damping of the object itself", "lowest natural frequency")
 
 
 def _names() -> Iterator[str]:

@@ -1,6 +1,5 @@
 """Numbers for the reader: SI inside, centimetres, g, degrees and MPa on paper."""
 
-import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -23,14 +22,6 @@ _FIXED: dict[str, tuple[str, float]] = {
 _RATIOS = ("-", "")
 _POWERS = {"m": ("", 1), "m2": ("²", 2), "m3": ("³", 3), "m/s": ("/s", 1)}
 _THIN = "\u202f"
-
-_NUMBER = r"(\d+(?:\.\d+)?(?:e-?\d+)?)"
-_RANGE = rf"(?: \({_NUMBER} to {_NUMBER}\))?"
-_STATED = re.compile(
-    # What is one of several numbers with one unit ("0.3 to 2 m") cannot be written anew alone.
-    r"(?<![\w.,/×–-])(?<!\d to )(?<!\d and )(?<!\d or )(?<!\d by )(?<!\d, )"
-    rf"{_NUMBER}{_RANGE} (mm|cm|m){_RANGE}(?![\w/²³^])"
-)
 
 
 def significant(value: float, digits: int, *, keep: bool = False) -> str:
@@ -130,20 +121,6 @@ class Units:
         """Write a range without its unit, which stands before it: "9 to 14"; one number where both read the same."""
         first, last = self.number(low, unit), self.number(high, unit)
         return last if first == last else _("%(low)s to %(high)s") % {"low": first, "high": last}
-
-    def restated(self, text: str) -> str:
-        """Write the lengths of what Kouros assumed ("0.012 (0.005 to 0.025) m, assumed") in the reader's unit.
-
-        A text with quotation marks stays as it is: it cites what the museum or somebody else wrote.
-        """
-        if "'" in text or '"' in text or "“" in text:
-            return text
-        return _STATED.sub(self._restated, text)
-
-    def _restated(self, found: re.Match[str]) -> str:
-        value, low, high, unit, later_low, later_high = found.groups()
-        best, *ends = (float(one) * LENGTHS[unit] for one in (value, low or later_low, high or later_high) if one)
-        return self.text(best, "m") + (f" ({self.bare(ends[0], ends[1], 'm')})" if ends else "")
 
     def fill(
         self,

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, get_type_hints
 
 from sqlalchemy import Connection, select
 
+from pipeline.analysis.house.effect import rests_on
 from pipeline.records import (
     Decision,
     DecisionChange,
@@ -17,6 +18,7 @@ from pipeline.records import (
     ObjectChange,
     ObjectPlace,
     Outline,
+    Ruled,
     RunChanges,
     Scene,
     Verdict,
@@ -27,7 +29,7 @@ from pipeline.store.causes import Causes, MotionKey
 from pipeline.store.news import Seen, news
 from pipeline.store.pages import found_of, load_members
 from pipeline.store.results import DamagedRunError, Digests, fetch, outline_of, outlines
-from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, TABLES
+from pipeline.store.reuse import CODE, DISPLAY, HOUSE, HOUSE_RULES, KERNELS, LEVELS, RULES, TABLES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
 
@@ -136,11 +138,36 @@ class _Comparison:
         return tuple(sorted(moves, key=lambda move: (move.after, move.object_number)))
 
     @cached_property
-    def inputs(self) -> tuple[InputChange, ...]:
+    def _differing_scenes(self) -> tuple[dict[str, Scene], dict[str, Scene]]:
+        """The scenes of objects that are in both runs and not the same, by number, before and after."""
         differing = {now.object_number for was, now in self._both if (was.item, was.scene) != (now.item, now.scene)}
         if not differing:
-            return ()
+            return {}, {}
         was, now = (self._scenes(places, differing) for places in self._places)
+        return was, now
+
+    def _ruled(self) -> dict[str, tuple[Ruled, ...]]:
+        """Return by number the house rules that are new for an object, or hold for it no longer."""
+        rules = [run["settings"].get(HOUSE_RULES) for run in (self.before, self.after)]
+        # A run of an earlier version does not say which it had.
+        if None in rules or rules[0] == rules[1]:
+            return {}
+        found = {}
+        for number, scene in self._differing_scenes[1].items():
+            sides = (self._differing_scenes[0][number], scene)
+            before, after = (
+                [rule for rule in some if rests_on(side, rule["words"], rule["source"])]
+                for some, side in zip(rules, sides, strict=True)
+            )
+            told = [ruled_of(rule, new=True) for rule in after if rule not in before]
+            told += [ruled_of(rule, new=False) for rule in before if rule not in after]
+            if told:
+                found[number] = tuple(told)
+        return found
+
+    @cached_property
+    def inputs(self) -> tuple[InputChange, ...]:
+        was, now = self._differing_scenes
         found = []
         for number, scene in now.items():
             before = was[number]
@@ -218,7 +245,7 @@ class _Comparison:
         quiet = {c.decision.object_number for c in self.decisions} - before.keys() - after.keys()
         same = self._unchanged(quiet)
         shared = bool(self.motions[0] != self.motions[1] or self.settings or self.versions)
-        return news(before | same, after | same, self.decisions, self.causes, shared=shared)
+        return news(before | same, after | same, self.decisions, self.causes, shared=shared, ruled=self._ruled())
 
     def _unchanged(self, numbers: Set[str]) -> dict[str, Seen]:
         """Return those of some objects that are in both runs as they were."""
@@ -243,6 +270,12 @@ class _Comparison:
                     number, why = now.object_number, causes.of(now.object_number, level, was.floor, now.floor)
                     found.append(VerdictChange(number, now.gallery, model, level, _verdict(one), _verdict(other), why))
         return tuple(sorted(found, key=lambda c: (c.gallery, c.object_number, c.level, c.model)))
+
+
+def ruled_of(rule: Mapping[str, Any], *, new: bool) -> Ruled:
+    """Return a house rule as news tells it, from what a run keeps of it."""
+    classes, about = (tuple(map(str, rule[name])) for name in ("classes", "about"))
+    return Ruled(new, rule["who"], rule["date"], classes, about, dict(rule["states"]))
 
 
 def _verdict(text: str | None) -> Verdict | None:

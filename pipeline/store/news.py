@@ -4,8 +4,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from pipeline.records import Brief, DecisionChange, NewsKind, ObjectChange, Settled
+from pipeline.records import Brief, DecisionChange, NewsKind, ObjectChange, Ruled, Settled
 from pipeline.store.causes import Causes
+
+ONE_BY_ONE = 200
+"""Objects at most that one change of house rules moves and that are told one by one; of more their number is told."""
 
 
 class Seen(NamedTuple):
@@ -30,6 +33,7 @@ def news(
     causes: Causes,
     *,
     shared: bool,
+    ruled: Mapping[str, tuple[Ruled, ...]] | None = None,
 ) -> tuple[tuple[ObjectChange, ...], dict[str, int]]:
     """Return news of objects in the order in which it is told, and how much there is that all have in common.
 
@@ -46,29 +50,45 @@ def news(
         All that changed.
     shared : bool
         Whether anything changed that verdicts of objects have in common.
+    ruled : mapping of str to tuple of Ruled, optional
+        By number, house rules that are new for an object, or hold for it no longer.
     """
+    ruled = ruled or {}
     about: dict[str, list[Settled]] = {}
     for change in decisions:
         about.setdefault(change.decision.object_number, []).append(Settled.of(change.decision, new=change.new))
     found: list[ObjectChange] = []
+    moved: list[ObjectChange] = []
     counts: Counter[NewsKind] = Counter()
     for number in before.keys() | after.keys():
         was, now = before.get(number), after.get(number)
-        one = _change(number, was, now, tuple(about.get(number, ())), causes)
+        one = _change(number, was, now, tuple(about.get(number, ())), causes, ruled.get(number, ()))
         kind = one.kind
         if kind is None:
             continue
         if was is not None and now is not None and _in_common(one, was, now, shared=shared):
-            counts[kind] += 1
+            if one.ruled:
+                moved.append(one)
+            else:
+                counts[kind] += 1
         else:
             found.append(one)
+    if len(moved) <= ONE_BY_ONE:
+        found += moved
+    else:
+        counts.update(one.kind for one in moved if one.kind is not None)
     return tuple(sorted(found, key=lambda one: one.order)), {
         kind.value: counts[kind] for kind in NewsKind if counts[kind]
     }
 
 
 def _change(
-    number: str, was: Seen | None, now: Seen | None, decided: tuple[Settled, ...], causes: Causes
+    number: str,
+    was: Seen | None,
+    now: Seen | None,
+    decided: tuple[Settled, ...],
+    causes: Causes,
+    ruled: tuple[Ruled, ...],
 ) -> ObjectChange:
     last = now or was
     if last is None:
@@ -84,6 +104,7 @@ def _change(
         now is not None,
         decided,
         causes.fields(number),
+        ruled,
     )
 
 

@@ -22,6 +22,7 @@ TABLES = "tables"
 
 
 HOUSE = "house"
+HOUSE_RULES = "house_rules"
 """The same of its house rules, in one hash."""
 
 

@@ -87,7 +87,11 @@ def test_a_curator_finds_an_object_sees_why_and_accepts_the_risk(running: str, b
     (made,) = read_decisions(engine_of(museum))
     assert (made.object_number, made.kind, made.who) == ("2.3", DecisionKind.ACCEPT, "A. Smith")
     # What was decided stands beside what is advised; and the name is typed once.
-    assert "Risk accepted" in see(browser, "section.first").text
+    first = see(browser, "section.first")
+    assert "Risk accepted" in first.text
+    # What is advised is no longer what stands out.
+    assert "Without this decision it would be advised:" in first.text
+    assert first.find_elements("css selector", ".do") == []
     assert see(browser, "#accept input[name=who]").get_attribute("value") == "A. Smith"
     assert complaints(browser) == []
 

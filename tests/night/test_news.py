@@ -189,3 +189,33 @@ def load_run_day(index: str) -> str:
     found = re.search(r"from (\d{4}-\d\d-\d\d) ", index)
     assert found
     return found[1]
+
+
+def test_a_house_rule_that_moved_an_object_is_named(museum: Path) -> None:
+    """Gallery 2 is said to be fastened: what moves there says by which rule, what moves elsewhere would not."""
+    rows = [row(f"5.{at}", "Vase", "Gallery 2", *SLENDER) for at in range(3)]
+    write(museum, [*rows, row("7.8", "Vase", "Gallery 3", *SLENDER)])
+    night(museum)
+    before = listed(museum)
+    settings = museum / "kouros.toml"
+    rule = '\n[[house]]\ngallery = "Gallery 2"\nheld = "fastened"\nsaid_by = "A. <b>"\nsaid_on = 2031-05-12\n'
+    settings.write_text(settings.read_text(encoding="utf-8") + rule, encoding="utf-8")
+    changes, after = night(museum), listed(museum)
+    assert changes is not None
+    moved = {number for number in after if before[number] != after[number]}
+    assert moved
+    assert moved <= {"5.0", "5.1", "5.2"}
+    assert {one.object_number for one in changes.objects} == moved
+    assert changes.shared == {}
+    said = sentences(changes, 100)
+    assert all("house rule for Gallery 2: how they are held: fastened, by A. <b>, 2031-05-12" in one for one in said)
+    page = (museum / "reports" / "latest" / "news.html").read_text(encoding="utf-8")
+    assert "A. &lt;b&gt;, 2031-05-12" in page
+    assert texts(museum / "reports" / "index.html") == texts(museum / "reports" / "latest" / "news.html")
+
+    # Taken back, it is named as what holds no longer.
+    settings.write_text(settings.read_text(encoding="utf-8").removesuffix(rule), encoding="utf-8")
+    changes = night(museum)
+    assert changes is not None
+    assert {one.object_number for one in changes.objects} == moved
+    assert all("no longer the house rule for Gallery 2" in one for one in sentences(changes, 100))

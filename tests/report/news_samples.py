@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pipeline.records import Band, Brief, NewsKind, ObjectChange, Settled, State
+from pipeline.records import Band, Brief, NewsKind, ObjectChange, Ruled, Settled, State
 from pipeline.tables import table
 
 ACT = Brief(State.ACT, Band.LIKELY.value, "fasten", "Fasten")
@@ -15,7 +15,8 @@ UNKNOWN = Brief(State.UNKNOWN, missing="height_m")
 
 def news_of_every_kind(word: str) -> tuple[ObjectChange, ...]:
     """Return news of each kind, in each of its wordings, of objects whose texts are all one word."""
-    made = Settled(True, "clamps", word, word)
+    made = Settled(True, "clamps", word, word, date="2031-05-01")
+    rule = Ruled(True, word, "2031-05-01", ("framed",), (word,), {"hanging": "two_hooks", "friction": ""})
     base = ObjectChange("1", word, word, FINE, ACT)
     unsure = replace(ACT, band=Band.ALMOST_CERTAIN.value, measure="")
     found = [
@@ -30,6 +31,8 @@ def news_of_every_kind(word: str) -> tuple[ObjectChange, ...]:
         replace(base, before=ACT, after=FINE, decided=(made, replace(made, new=False, measure="wax"))),
         replace(base, before=ACT, after=WATCH, decided=(made,)),
         replace(base, before=ACT, after=WATCH, decided=(replace(made, new=False, measure=""),)),
+        replace(base, before=ACT, after=FINE, ruled=(rule,)),
+        replace(base, ruled=(replace(rule, new=False),)),
         replace(base, before=None, after=FINE),
         replace(base, before=None, after=UNKNOWN),
         replace(base, after=None),

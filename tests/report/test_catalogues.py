@@ -77,3 +77,11 @@ def test_numbers_are_written_as_the_languages_people_do(tmp_path: Path) -> None:
     every = "\n".join(file.read_text() for file in text.glob("*.html"))
     assert re.search(r"\d,\d+\u202f(cm|s|kg|g)\b", every)
     assert not re.search(r"(?<![\d.])\d\.\d{1,2}\u202f(cm|kg)\b", every)
+
+
+def test_a_number_in_a_phrase_is_not_parted_from_its_unit() -> None:
+    """Where a line breaks between them, "45" is followed by nothing and "min" begins the next line."""
+    parted = re.compile(r"(?:\)s|\}) (?:h|min|s|km|cm|mm|m|kg|g|Hz|cm/s)(?!\w)")
+    told = [text for message in map(catalogue_of, LETTERS) for one in message for text in (one.id, one.string)]
+    texts = [text for one in told for text in ([one] if isinstance(one, str) else one)]
+    assert [text for text in texts if parted.search(text)] == []

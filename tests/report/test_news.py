@@ -49,6 +49,8 @@ def test_the_words_that_a_curator_reads() -> None:
         "New and in danger: 2026.1 vase: fasten it.",
     ]
     assert SUBJECTS["changed"] == "what changed"
+    accepted = ObjectChange("1", "t", "g", ACT, ACT, decided=(Settled(True, "", "risk accepted", "A.B."),))
+    assert news_line(accepted).sentence == "Decided: 1 t: risk accepted, by A.B."
 
 
 @pytest.mark.parametrize(

@@ -64,19 +64,3 @@ def test_placeholders_are_filled_and_doubled_braces_kept() -> None:
 def test_a_sentence_that_asks_for_anything_else_is_refused_by_name(sentence: str) -> None:
     with pytest.raises(ReportError, match="object 12"):
         Units().fill(sentence, {"demand": (1.0, "m")}, "object 12")
-
-
-@pytest.mark.parametrize(
-    ("text", "length", "told"),
-    [
-        ("hooks: 0.0127 (0.00508 to 0.0254) m, assumed", "in", "hooks: 0.5\u202fin (0.2 to 1), assumed"),
-        ("hooks: 0.012 (0.005 to 0.025) m, assumed", "cm", "hooks: 1.2\u202fcm (0.5 to 2.5), assumed"),
-        ("clearance: 10 cm (5 to 30) to its edge", "mm", "clearance: 100\u202fmm (50 to 300) to its edge"),
-        ("a cord from a rail up to 0.5 m more", "cm", "a cord from a rail up to 50\u202fcm more"),
-        ("plates of 0.3 to 2 m", "cm", "plates of 0.3 to 2 m"),
-        ("bronze of 8700 kg/m3, 1.5 m/s, 3 m² and 2 mounts", "in", "bronze of 8700 kg/m3, 1.5 m/s, 3 m² and 2 mounts"),
-        ('read from "H. 30 cm"', "in", 'read from "H. 30 cm"'),
-    ],
-)  # fmt: skip
-def test_what_is_assumed_is_said_in_the_readers_unit_of_length(text: str, length: str, told: str) -> None:
-    assert Units(length).restated(text) == told

@@ -244,3 +244,14 @@ def test_what_makes_advice_doubtful_goes_before_it() -> None:
     assert (told["slender"].what, told["slender"].numbers) == ("Check its sizes first", "")
     assert told["unnamed"].what == "Say first what it is"
     assert told["plain"].what not in {told["slender"].what, told["unnamed"].what}
+
+
+def test_a_sheet_that_counts_a_later_decision_says_so(tmp_path: Path) -> None:
+    view = WalkView("Gallery 12", PageView("g.html"), (WalkRow("1", "", "Clamp it"),), ())
+    told = {
+        day: words_of(sheet_pdf(replace(view, decided=day), HEAD, Language()), tmp_path)[0]
+        for day in ("", "2031-04-30", "2031-05-01", "2031-05-12")
+    }
+    assert all("results of 2031-05-01" in text for text in told.values())
+    assert {day for day, text in told.items() if "decisions until" in text} == {"2031-05-12"}
+    assert "decisions until 2031-05-12" in told["2031-05-12"]

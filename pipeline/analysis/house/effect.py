@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from pipeline.analysis.house.rule import Span
-from pipeline.records import Anchorage, Estimate, Furniture, Hanging, Item, Mount, Origin, Support
+from pipeline.records import Anchorage, Estimate, Furniture, Hanging, Item, Mount, Origin, Scene, Support
+from pipeline.records import phrases as say
 
 _WORDS: Mapping[StrEnum, str] = {
     Hanging.WIRE: "hangs from a wire or one hook",
@@ -51,7 +52,7 @@ class HouseStatement:
         if not isinstance(span, Span):
             raise TypeError(f"{self.field} is no number")
         low, best, high = (times * end for end in (span.low, span.best, span.high))
-        note = f"{what}: by the house rule for {self.words}"
+        note = say.STATED(what=what, rule=self.words)
         return Estimate(best, unit, Origin.STATED, low, high, note, self.source)
 
 
@@ -112,3 +113,18 @@ class HouseEffect:
 
 
 NO_EFFECT = HouseEffect()
+
+
+def rests_on(scene: Scene, words: str, source: str) -> bool:
+    """Say whether anything of a scene is taken from a house rule, by the words and the source of that rule."""
+    stated = say.STATED(what="", rule=words).removeprefix(": ")
+    if any(f"{stated} ({source})" in text for text in (*scene.statements, *scene.assumptions)):
+        return True
+    # The source of a number stands beside its note; how a work hangs has its own in the words.
+    ends = (stated, f"{stated} ({source})")
+    return any(
+        clause.endswith(ends if one.source == source else ends[1])
+        for one in scene.parameters.values()
+        if one.note
+        for clause in one.note.split("; ")
+    )

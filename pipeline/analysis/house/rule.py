@@ -172,6 +172,19 @@ class HouseRule(BaseModel):
         """Who says so, and when."""
         return f"{self.said_by}, {self.said_on.isoformat()}"
 
+    def told(self) -> dict[str, Any]:
+        """Return what a run keeps of it for the news: its words and source as notes have them, and of what they are."""
+        others = ("gallery", "number", "medium", "support")
+        return {
+            "words": self.words,
+            "source": self.source,
+            "who": self.said_by,
+            "date": self.said_on.isoformat(),
+            "classes": list(self.object_class),
+            "about": [str(one) for name in others for one in getattr(self, name)[:_LISTED]],
+            "states": {name: str(value) if isinstance(value, StrEnum) else "" for name, value in self.states.values()},
+        }
+
     def plain(self) -> dict[str, Any]:
         """Return what it says as the keys and values of TOML."""
         out: dict[str, Any] = {}

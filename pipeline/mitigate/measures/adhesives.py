@@ -5,6 +5,7 @@ from math import pi
 from pipeline.mitigate.measures.fixings import Fixing, Reach, dot
 from pipeline.mitigate.proposals import Deficiency, Proposal, refused
 from pipeline.mitigate.trials import TrialRunner
+from pipeline.models.common import N_
 from pipeline.records import Scene
 
 LEVER = 2.0 / 3.0
@@ -32,7 +33,7 @@ class _Dots(Fixing):
         """Propose dots, unless it stands on legs: its footing is taken as one, and there are only their ends."""
         row = runner.values.classes.get(one.scene.object_class)
         if row is not None and row.section == "legs":
-            return refused("it stands on legs, which have no room for it under them")
+            return refused(N_("it stands on legs, which have no room for it under them"))
         return super().propose(one, runner)
 
     def room(self, scene: Scene, worst: bool) -> float:

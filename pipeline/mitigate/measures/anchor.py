@@ -6,6 +6,7 @@ from pipeline.analysis.furniture import FREQUENCY, fastened, loose
 from pipeline.mitigate.measures.base import Measure
 from pipeline.mitigate.proposals import UNCONCERNED, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import TrialRunner
+from pipeline.models.common import N_
 from pipeline.records import Scene
 
 
@@ -23,5 +24,5 @@ class Anchor(Measure):
         """Propose it where its furniture is known not to be fastened."""
         if not loose(one.scene):
             unsaid = one.scene.anchorage is None and FREQUENCY in one.scene.parameters
-            return refused("nobody says that what it stands in is not fastened") if unsaid else UNCONCERNED
+            return refused(N_("nobody says that what it stands in is not fastened")) if unsaid else UNCONCERNED
         return self.one_trial(one, {}, finish=lambda _: {})

@@ -5,8 +5,10 @@ from collections.abc import Mapping
 from pipeline.mitigate.measures.base import NOT_FREE, SPARE, Measure, with_parameters
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.quantities import Quantity
 from pipeline.records import Estimate, Origin, Scene, Support
+from pipeline.records import phrases as say
 
 
 class Ballast(Measure):
@@ -48,21 +50,21 @@ class Ballast(Measure):
         if scene.support is not Support.FREESTANDING:
             return NOT_FREE
         if not {"half_width", "cg_height", "mass"} <= set(scene.parameters):
-            return refused("its base, its mass or its centre of gravity is not known")
+            return refused(N_("its base, its mass or its centre of gravity is not known"))
         if not one.rocks:
-            return refused("it does not rock: a lower centre of gravity does not help")
+            return refused(N_("it does not rock: a lower centre of gravity does not help"))
         if self.row.classes and scene.object_class not in self.row.classes:
-            return refused("objects of its kind have no room for ballast")
+            return refused(N_("objects of its kind have no room for ballast"))
         mass, cg, half = (scene.parameters[name] for name in ("mass", "cg_height", "half_width"))
         at = self.row.limit_high * cg.value
         # At the worst of what is uncertain: the heaviest and highest body, and the least height that may be left.
         left = half.low / runner.tilt(scene)
         if left <= at:
-            return refused("no ballast brings its centre of gravity low enough")
+            return refused(N_("no ballast brings its centre of gravity low enough"))
         needed = SPARE * mass.high * (cg.high - left) / (left - at)
         share = needed / mass.value
         if share > self.row.limit:
-            return refused(f"it would need {100 * share:.0f} % of its mass; {100 * self.row.limit:.0f} % is allowed")
+            return refused(f"{say.BALLAST(share=share)}; {say.SHARE_ALLOWED(limit=self.row.limit)}")
         numbers = {"mass": (max(needed, 0.0), "kg"), "height": (at, "m")}
         lowered = self.in_place(one, numbers)
         numbers["cg_height"] = (lowered.parameters["cg_height"].value, "m")

@@ -13,6 +13,7 @@ from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal
 from pipeline.mitigate.rows import MeasureRow
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models import settled_by_room
+from pipeline.models.common import N_
 from pipeline.models.sliding import SLIDING
 from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.quantities import Quantity
@@ -24,9 +25,11 @@ MARGIN = 1.1
 SPARE = 1.01
 """Margin on sizes that are found in closed form and then run: 1 %, so that rounding never decides."""
 
-NOT_FREE = refused("it does not stand free")
-UNKNOWN_FREQUENCY = refused("how fast it sways is only estimated: its natural frequency must be measured first")
-UNKNOWN_SECTION = refused("its mass or critical section is not known, so the stress of a held base cannot be checked")
+NOT_FREE = refused(N_("it does not stand free"))
+UNKNOWN_FREQUENCY = refused(N_("how fast it sways is only estimated: its natural frequency must be measured first"))
+UNKNOWN_SECTION = refused(
+    N_("its mass or critical section is not known, so the stress of a held base cannot be checked")
+)
 
 SECTION = ("mass", "lever", "area", "section_modulus", "allowable_stress")
 """What must be known for the stress of a critical section."""

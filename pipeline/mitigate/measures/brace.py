@@ -31,7 +31,9 @@ from pipeline.mitigate.measures.base import (
 )
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.records import Estimate, Scene, Support
+from pipeline.records import phrases as say
 
 LEVER = (0.15, 0.25, 0.5)
 """Bending over that without the brace: low, best, high; the best is the bound of an even bar, the others judgement."""
@@ -66,13 +68,13 @@ class Brace(Measure):
         if scene.support is not Support.FREESTANDING:
             return NOT_FREE
         if self.row.classes and scene.object_class not in self.row.classes:
-            return refused("objects of its kind cannot be braced so")
+            return refused(N_("objects of its kind cannot be braced so"))
         if not knows_section(scene) or "cg_height" not in scene.parameters:
             return UNKNOWN_SECTION
         # Twice the height of the centre of gravity, where the height itself is not recorded.
         tall = scene.item.height_m or 2.0 * scene.parameters["cg_height"].value
         if tall < self.row.limit:
-            return refused(f"a brace is out of proportion for what is lower than {100 * self.row.limit:.0f} cm")
+            return refused(say.TOO_LOW_TO_BRACE(height=self.row.limit))
         numbers = {
             "force": (scene.parameters["mass"].high * runner.push, "N"),
             "height": (ABOVE * scene.parameters["cg_height"].value, "m"),

@@ -7,7 +7,9 @@ from pipeline.mitigate.measures.base import CLEARANCE, MARGIN, Measure, cleared,
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, known_to_swing, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models import settled_by_room
+from pipeline.models.common import N_
 from pipeline.records import Check, Scene, Support, Verdict
+from pipeline.records import phrases as say
 
 STEPS = (1.0, 1.4, 2.0, 2.8, 4.0, 5.6)
 """Rooms that are tried, over what it needs by the best estimates: each 1.4 times the one before."""
@@ -46,18 +48,19 @@ class Clearance(Measure):
             return self._likely_enough(one, runner)
         others = [f for f in one.findings if not settled_by_room(f.model) and f.verdict is not Verdict.PASS]
         if others:
-            may = "it fails" if any(f.verdict is Verdict.FAIL for f in others) else "it may fail"
-            return refused(f"room does not help: {may} otherwise than by moving")
+            if any(f.verdict is Verdict.FAIL for f in others):
+                return refused(N_("room does not help: it fails otherwise than by moving"))
+            return refused(N_("room does not help: it may fail otherwise than by moving"))
         if not known_to_swing(one.scene):
-            return refused("room helps only what swings, and how it hangs is not recorded")
+            return refused(N_("room helps only what swings, and how it hangs is not recorded"))
         most = one.moves
         if most is None:
-            return refused("it does not move")
+            return refused(N_("it does not move"))
         room = round_up(MARGIN * most)
         hangs = one.scene.support in (Support.HUNG, Support.SUSPENDED)
         allowed = self.row.limit_high if hangs else self.row.limit
         if room > allowed:
-            return refused(f"it would need {100 * room:.0f} cm of room, more than the {100 * allowed:.0f} cm allowed")
+            return refused(say.NEEDS_ROOM(room=room, allowed=allowed))
         numbers = {"clearance": (room, "m"), "movement": (most, "m")}
         capacity = self.in_place(one, numbers).parameters["clearance"]
         checks = []
@@ -91,9 +94,7 @@ class Clearance(Measure):
             return refused(rooms)
         remains = runner.once(self.row.name, dict[int, float]).get(one.index)
         if remains is not None:
-            return refused(
-                f"with {100 * rooms[-1]:.0f} cm harm would remain with a probability of {100.0 * remains:.0f} %"
-            )
+            return refused(say.HARM_REMAINS_WITH_ROOM(room=rooms[-1], chance=remains))
         candidates = []
         for room in rooms:
             numbers = {"clearance": (room, "m"), "movement": (room / MARGIN, "m")}
@@ -106,10 +107,10 @@ class Clearance(Measure):
     def _rooms(self, one: Deficiency) -> tuple[float, ...] | str:
         """Return the rooms to try, rising [m]; in words why there are none."""
         if any(not settled_by_room(f.model) and not (f.utilisation or 0.0) <= 1.0 for f in one.findings):
-            return "room does not help: it fails otherwise than by moving"
+            return N_("room does not help: it fails otherwise than by moving")
         moving = [f for f in one.findings if settled_by_room(f.model)]
         if not moving or not known_to_swing(one.scene):
-            return "room helps only what moves, and what hangs only where it is recorded how"
+            return N_("room helps only what moves, and what hangs only where it is recorded how")
         best = max(f.demand or 0.0 for f in moving)
         hangs = one.scene.support in (Support.HUNG, Support.SUSPENDED)
         allowed = self.row.limit_high if hangs else min(self.row.limit, _spared(one.scene))
@@ -117,7 +118,7 @@ class Clearance(Measure):
         tried = tuple(room for room in rooms if 0.0 < room <= allowed)
         if tried:
             return tried
-        return f"it would need {100 * rooms[0]:.0f} cm of room, more than the {100 * allowed:.0f} cm that it can have"
+        return say.HAS_NO_ROOM(room=rooms[0], allowed=allowed)
 
 
 def _spared(scene: Scene) -> float:

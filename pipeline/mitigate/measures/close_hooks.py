@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pipeline.mitigate.measures.base import Measure, exactly, with_parameters
 from pipeline.mitigate.proposals import Deficiency, Proposal, refused
 from pipeline.mitigate.trials import TrialRunner
+from pipeline.models.common import N_
 from pipeline.records import Scene, Support, Verdict
 
 
@@ -22,7 +23,7 @@ class CloseHooks(Measure):
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:  # noqa: ARG002
         """Propose it where it may come off."""
         if one.scene.support is not Support.HUNG:
-            return refused("it does not hang on a wall")
+            return refused(N_("it does not hang on a wall"))
         if all(f.verdict is Verdict.PASS for f in one.findings if f.model == "unhooking"):
-            return refused("nothing lifts it off its hooks")
+            return refused(N_("nothing lifts it off its hooks"))
         return self.one_trial(one, {}, finish=lambda _: {})

@@ -15,8 +15,10 @@ from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
 from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, bends, held, knows_section
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.records import Check, Estimate, Finding, Item, Scene, Support
+from pipeline.records import phrases as say
 from pipeline.records.numerics import HISTORIES
 from pipeline.tables.assumed import AssumedValues
 
@@ -214,12 +216,12 @@ class Fixing(Measure, ABC):
         if scene.support is not Support.FREESTANDING:
             return NOT_FREE
         if self.row.classes and scene.object_class not in self.row.classes:
-            return refused("objects of its kind cannot be held so")
+            return refused(N_("objects of its kind cannot be held so"))
         if not knows_section(scene) or not {"half_width", "cg_height"} <= set(scene.parameters):
             return UNKNOWN_SECTION
         material = touched(scene.item, runner.values)
         if material in self.strength.harms:
-            return refused(f"it harms {material}")
+            return refused(say.HARMS(material=material))
         demand = HoldingDemand.of(scene, runner)
         care = self.strength.care if material in self.strength.care_for else HARMLESS
         found = (self._candidate(one, demand, care, worst) for worst in (True, False))
@@ -294,8 +296,8 @@ class Fixing(Measure, ABC):
     def _short(self, scene: Scene, demand: HoldingDemand) -> str:
         most = max((self.holds(scene, demand, *some, False) for some in self._sets(scene, False)), default=0.0)
         if most <= 0.0:
-            return "there is no room for it under its base"
-        return f"at most it holds {most:.2g} times what is needed, and {self.strength.factor:g} times are asked"
+            return N_("there is no room for it under its base")
+        return say.HOLDS_AT_MOST(times=most, asked=self.strength.factor)
 
 
 def dot(size: float) -> float:

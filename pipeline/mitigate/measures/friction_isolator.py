@@ -16,6 +16,7 @@ from pipeline.mitigate.measures.base import (
 )
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.records import Scene, Support
 
 
@@ -42,12 +43,12 @@ class FrictionIsolator(Measure):
         """Propose the pads of the catalogue that keep to the room that there is."""
         scene = one.scene
         if scene.support not in (Support.FREESTANDING, Support.FASTENED):
-            return refused("it does not stand")
+            return refused(N_("it does not stand"))
         if not {"half_width", "cg_height"} <= set(scene.parameters):
-            return refused("whether it rocks is not known")
+            return refused(N_("whether it rocks is not known"))
         half, cg = scene.parameters["half_width"], scene.parameters["cg_height"]
         if runner.lift > half.low / cg.high:
-            return refused("it may rock: a low friction never excuses that")
+            return refused(N_("it may rock: a low friction never excuses that"))
         upright = replace(scene, support=Support.FREESTANDING, models=("rocking",))
         candidates = []
         for response in runner.isolated(self.isolator):
@@ -62,5 +63,5 @@ class FrictionIsolator(Measure):
             marks = {level: ("sliding", pad.friction, moved) for level, moved in response.strokes.items()}
             candidates.append(Candidate(numbers, tuple(trials), marks=marks))
         if not candidates:
-            return refused("no low-friction pad keeps to the room that there is")
+            return refused(N_("no low-friction pad keeps to the room that there is"))
         return Proposal(tuple(candidates))

@@ -6,6 +6,7 @@ from pipeline.mitigate.measures.base import Measure, held, round_up
 from pipeline.mitigate.measures.fixings import SIDEWAYS
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.models.hanger_load import pull
 from pipeline.quantities import G
 from pipeline.records import Check, Mount, Scene
@@ -31,9 +32,9 @@ class Hold(Measure):
         """Propose a mount for the largest pull of the levels."""
         scene = one.scene
         if scene.mount is None:
-            return refused("it neither lies nor is held by a mount")
+            return refused(N_("it neither lies nor is held by a mount"))
         if scene.mount is Mount.SECURED:
-            return refused("its mount holds it already: have that made stronger")
+            return refused(N_("its mount holds it already: have that made stronger"))
         times = round_up(runner.largest(pull), 0.1)
         mass = scene.parameters.get("mass")
         checks: tuple[tuple[str, Check], ...] = ()

@@ -19,9 +19,10 @@ from pipeline.mitigate.measures.base import (
 )
 from pipeline.mitigate.proposals import IT, STANDING, Candidate, Deficiency, Option, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
-from pipeline.models.common import lift_ratios
+from pipeline.models.common import N_, lift_ratios
 from pipeline.quantities import Quantity
 from pipeline.records import Check, Estimate, Scene, Support
+from pipeline.records import phrases as say
 
 GENERIC = "a horizontal isolator (a generic one: ask a maker for a product like it)"
 """What stands for an isolator of which no maker is named."""
@@ -30,7 +31,10 @@ PLATFORM, LOAD = "Lifting of the isolator's platform", "Load on the isolator"
 """What an isolator is asked besides its own model, in the words of a report."""
 
 OUT_OF_PROPORTION = refused(
-    "an isolator is out of proportion: neither its class of value, as recorded, nor the danger of its fall is worth one"
+    N_(
+        "an isolator is out of proportion: neither its class of value, as recorded, "
+        "nor the danger of its fall is worth one"
+    )
 )
 """Of what counts less than an isolator does (tables/stakes.csv)."""
 
@@ -84,7 +88,7 @@ class HorizontalIsolator(Measure):
         for one in objects:
             refusal = _unsuited(one.scene)
             if refusal:
-                return refused(refusal if len(objects) == 1 else f"{one.number} shares its case: {refusal}")
+                return refused(refusal if len(objects) == 1 else say.SHARES_CASE(number=one.number, refusal=refusal))
         if runner.aims and proportion(one.scene for one in objects) < 1.0:
             return OUT_OF_PROPORTION
         load, candidates, why = Load.of([one.scene for one in objects]), [], ""
@@ -97,7 +101,7 @@ class HorizontalIsolator(Measure):
             checks = load.checks(response, stroke, width)
             short = [check for check in checks if not check.passes]
             if short or width > self.row.limit_high:
-                why = f"{short[0].title.lower()} is more than it bears" if short else self._too_wide(width)
+                why = say.MORE_THAN_BORNE(check=short[0].title.lower()) if short else self._too_wide(width)
                 continue
             numbers = {
                 "frequency": (isolator.frequency, "Hz"),
@@ -117,10 +121,12 @@ class HorizontalIsolator(Measure):
         if not candidates and why:
             return refused(why)
         if not candidates:
-            longest = f" and none under {100 * self.row.limit:.0f} cm" if isfinite(self.row.limit) else ""
-            return refused(f"the catalogue has no horizontal isolator that keeps to its stroke{longest}")
-        among = f" for all {len(objects)} objects of its case" if len(objects) > 1 else ""
-        reason = f"no isolator of the catalogue passes on little enough within its stroke{among}"
+            if isfinite(self.row.limit):
+                return refused(say.NO_ISOLATOR_UNDER(stroke=self.row.limit))
+            return refused(N_("the catalogue has no horizontal isolator that keeps to its stroke"))
+        reason = N_("no isolator of the catalogue passes on little enough within its stroke")
+        if len(objects) > 1:
+            reason = say.NO_ISOLATOR_FOR_ALL(objects=len(objects))
         return Proposal(tuple(candidates), reason)
 
     @staticmethod
@@ -128,7 +134,7 @@ class HorizontalIsolator(Measure):
         return round_up(max(needed, STEP), STEP)
 
     def _too_wide(self, width: float) -> str:
-        return f"its platform would have to be {100 * width:.0f} cm wide; {100 * self.row.limit_high:.0f} cm is allowed"
+        return f"{say.PLATFORM(width=width)}; {say.LENGTH_ALLOWED(limit=self.row.limit_high)}"
 
 
 @dataclass(frozen=True)
@@ -201,14 +207,14 @@ def lift_of(response: IsolatorResponse) -> float:
 
 def _unsuited(scene: Scene) -> str:
     if scene.support not in STANDING:
-        return "it does not stand"
+        return N_("it does not stand")
     if not {"mass", "cg_height"} <= set(scene.parameters):
-        return "its mass or its centre of gravity is not known, so its platform cannot be checked"
+        return N_("its mass or its centre of gravity is not known, so its platform cannot be checked")
     if {"stroke", "rotation_limit"} & set(scene.parameters):
         # The frequency and the damping are the isolator's then, and its own are not at hand.
-        return "it stands on an isolator already: have that one changed"
+        return N_("it stands on an isolator already: have that one changed")
     if not knows_section(scene) and not _can_stand(scene):
-        return "neither its base nor its critical section is known"
+        return N_("neither its base nor its critical section is known")
     return ""
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pipeline.mitigate.measures.base import SPARE, Measure, exactly, rehung, with_parameters
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.models.hanger_load import pull
 from pipeline.records import Hanging, Scene, Support
 
@@ -29,10 +30,10 @@ class Restrain(Measure):
         """Propose fixings for the force of the push."""
         scene = one.scene
         if scene.support is not Support.HUNG:
-            return refused("it does not hang on a wall")
+            return refused(N_("it does not hang on a wall"))
         mass = scene.parameters.get("mass")
         if mass is None:
-            return refused("its mass is not known, so the force on the fixings cannot be given")
+            return refused(N_("its mass is not known, so the force on the fixings cannot be given"))
         fixed = self.in_place(one, {})
         # Its fixings are built for the force that they are told.
         strength = SPARE * fixed.parameters["amplification"].high * runner.largest(pull)

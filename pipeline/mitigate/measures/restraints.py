@@ -8,6 +8,7 @@ from pipeline.analysis.classify import models_of
 from pipeline.mitigate.measures.adhesives import LEVER
 from pipeline.mitigate.measures.base import exactly, with_parameters
 from pipeline.mitigate.measures.fixings import Fixing, HoldingDemand, Reach
+from pipeline.models.common import N_
 from pipeline.records import Scene, Support
 
 BEARING = 0.25
@@ -42,7 +43,7 @@ class Pins(Fixing):
     def unsuited(self, scene: Scene, demand: HoldingDemand, worst: bool) -> str:  # noqa: ARG002
         """Say that it may rock."""
         lifts = demand.worst_moment if worst else demand.moment
-        return "it may rock: pins do not hold it down" if lifts > 0.0 else ""
+        return N_("it may rock: pins do not hold it down") if lifts > 0.0 else ""
 
 
 class _RoundTheBase(Fixing):

@@ -18,6 +18,7 @@ from pipeline.mitigate.measures.base import (
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.rows import Isolator
 from pipeline.mitigate.trials import Bodies, Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.models.stress import STRESS
 from pipeline.quantities import Quantity
 from pipeline.records import Estimate, Origin, Scene, Support
@@ -81,8 +82,8 @@ class RotationalIsolator(Measure):
             bent = replace(with_parameters(held(scene), amplification=amplified), models=("stress",))
             candidates.append(Candidate({**numbers, **told}, (Trial(turning), Trial(bent))))
         if not candidates:
-            return refused("the catalogue has no rotational isolator")
-        return Proposal(tuple(candidates), "on none of the pads does it turn and bend little enough")
+            return refused(N_("the catalogue has no rotational isolator"))
+        return Proposal(tuple(candidates), N_("on none of the pads does it turn and bend little enough"))
 
     def prepare(self, objects: Sequence[Deficiency], runner: TrialRunner) -> None:
         """Run all objects that it will be proposed for on each pad at once."""
@@ -101,11 +102,11 @@ class RotationalIsolator(Measure):
 
 def _unsuited(scene: Scene) -> Proposal | None:
     if scene.support not in (Support.FREESTANDING, Support.FASTENED):
-        return refused("it does not stand")
+        return refused(N_("it does not stand"))
     if not knows_section(scene) or "cg_height" not in scene.parameters:
         return UNKNOWN_SECTION
     if STRESS.applies(held(scene)):
-        return refused("it is flexible itself: no model has a flexible object on a pad that turns")
+        return refused(N_("it is flexible itself: no model has a flexible object on a pad that turns"))
     return None
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from pipeline.mitigate.measures.base import DAMPING, Measure, exactly, movement, with_parameters
 from pipeline.mitigate.proposals import Deficiency, Proposal, known_to_swing, refused
 from pipeline.mitigate.trials import TrialRunner
+from pipeline.models.common import N_
 from pipeline.records import Scene, Support
 
 
@@ -30,11 +31,11 @@ class RubberPads(Measure):
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:  # noqa: ARG002
         """Propose pads of the damping of the row."""
         if one.scene.support is not Support.HUNG:
-            return refused("it does not hang on a wall")
+            return refused(N_("it does not hang on a wall"))
         if "damping" not in one.scene.parameters or not known_to_swing(one.scene):
-            return refused("pads help only what swings, and it is not known to")
+            return refused(N_("pads help only what swings, and it is not known to"))
         if one.scene.parameters["damping"].value >= self.row.limit:
-            return refused("it has as much damping already")
+            return refused(N_("it has as much damping already"))
         return self.one_trial(one, {"damping": (self.row.limit, "-")}, finish=movement, mark_of="swing")
 
     def charted(self, scenes: Sequence[Scene]) -> list[Scene]:

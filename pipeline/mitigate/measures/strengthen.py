@@ -18,8 +18,10 @@ from pipeline.mitigate.measures.base import (
 from pipeline.mitigate.measures.fixings import HOLDS, force_and_moment
 from pipeline.mitigate.proposals import Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.quantities import G, Quantity
 from pipeline.records import Scene, Support
+from pipeline.records import phrases as say
 
 MODULI = ("section_modulus", "section_modulus_width", "section_modulus_depth")
 
@@ -54,7 +56,7 @@ class Strengthen(Measure):
         """Propose the least enlargement that bears the push at the worst of what is uncertain."""
         scene = one.scene
         if scene.support not in (Support.FREESTANDING, Support.FASTENED):
-            return refused("it does not stand")
+            return refused(N_("it does not stand"))
         if not knows_section(scene):
             return UNKNOWN_SECTION
         mass, area, modulus, allowed = (
@@ -68,8 +70,8 @@ class Strengthen(Measure):
         bending = max(tension + weight, 0.0)
         times = round_up(SPARE * (bending / allowed.low) ** (1.0 / 3.0)) if allowed.low > 0.0 else inf
         if times <= 1.0:
-            return refused("its critical section is strong enough as it is")
+            return refused(N_("its critical section is strong enough as it is"))
         if times > self.row.limit:
-            return refused(f"its section would have to be {times:.2g} times as large; {self.row.limit:g} is allowed")
+            return refused(f"{say.LARGER_SECTION(times=times)}; {say.TIMES_ALLOWED(limit=self.row.limit)}")
         numbers = {"enlargement": (times, "-"), "section_modulus": (times**3 * modulus.value, "m3")}
         return self.one_trial(one, numbers, finish=partial(force_and_moment, scene, runner))

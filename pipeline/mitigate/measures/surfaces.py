@@ -8,6 +8,7 @@ from pipeline.analysis.classify import material_of
 from pipeline.mitigate.measures.base import FRICTION, NOT_FREE, Measure, movement, on_surface
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
+from pipeline.models.common import N_
 from pipeline.records import Scene, Support
 
 
@@ -34,7 +35,7 @@ class _RougherSurface(Measure, ABC):
         if one.scene.support is not Support.FREESTANDING:
             return NOT_FREE
         if one.rocks:
-            return refused("it may rock: a surface that holds it does not keep it upright")
+            return refused(N_("it may rock: a surface that holds it does not keep it upright"))
         return None
 
 
@@ -63,7 +64,7 @@ class Surface(_RougherSurface):
             words = {"surface": surface.lower()}
             candidates.append(Candidate(numbers, (trial,), words=words, finish=movement, mark_of="sliding"))
         if not candidates:
-            return refused("Table 3 has no rougher surface for the material of its base")
+            return refused(N_("Table 3 has no rougher surface for the material of its base"))
         return Proposal(tuple(candidates))
 
 

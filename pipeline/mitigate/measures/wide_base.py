@@ -23,8 +23,10 @@ from pipeline.mitigate.measures.base import (
 from pipeline.mitigate.measures.fixings import HOLDS, force_and_moment
 from pipeline.mitigate.proposals import Deficiency, Proposal, refused
 from pipeline.mitigate.trials import TrialRunner
+from pipeline.models.common import N_
 from pipeline.quantities import Quantity
 from pipeline.records import Estimate, Scene, Support
+from pipeline.records import phrases as say
 
 
 class WideBase(Measure):
@@ -61,19 +63,18 @@ class WideBase(Measure):
         if scene.support is not Support.FREESTANDING:
             return NOT_FREE
         if not {"half_width", "cg_height"} <= set(scene.parameters):
-            return refused("its base or its centre of gravity is not known")
+            return refused(N_("its base or its centre of gravity is not known"))
         if not one.rocks:
-            return refused("it does not rock: a wider base does not help")
+            return refused(N_("it does not rock: a wider base does not help"))
         if not knows_section(scene):
             return UNKNOWN_SECTION
         half = scene.parameters["half_width"]
         width = round_up(SPARE * 2.0 * runner.tilt(scene) * scene.parameters["cg_height"].high)
         allowed = 2.0 * self.row.limit * half.value
         if width > allowed:
-            return refused(f"it would need a plate {100 * width:.0f} cm wide; {100 * allowed:.0f} cm is allowed")
+            return refused(f"{say.PLATE(width=width)}; {say.LENGTH_ALLOWED(limit=allowed)}")
         room = round_up(MARGIN * (one.moves or 0.0))
         if room > self.row.limit_high:
-            least = f"the {100 * self.row.limit_high:.0f} cm allowed"
-            return refused(f"it would need {100 * room:.0f} cm of room around its plate, more than {least}")
+            return refused(say.NEEDS_ROOM_AROUND(room=room, allowed=self.row.limit_high))
         numbers = {"width": (width, "m"), "clearance": (room, "m")}
         return self.one_trial(one, numbers, finish=partial(force_and_moment, scene, runner), mark_of="standing")

@@ -335,6 +335,12 @@ class _Sheet:
         # The day alone: a gallery that did not change is of an hour that no other page tells.
         date = moment(self._head.finished[:10])
         middle = _("results of %(date)s") % {"date": date} if date else ""
+        if self._view.decided > self._head.finished[:10]:
+            # What people decided since is on the sheet too: it is not all of that day.
+            middle = _("results of %(date)s, decisions until %(day)s") % {
+                "date": date,
+                "day": moment(self._view.decided),
+            }
         name = self._cut(self._name, SANS, 7.0, 0.45 * self._width)
         self._text(_MARGIN, y, name, SANS, 7.0, _GREY)
         draw_text(self._pdf, (self._size[0] / 2.0 + 0.1 * self._width, y), plain(middle), SANS, 7.0, share=0.5)

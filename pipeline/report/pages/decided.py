@@ -50,6 +50,10 @@ class Decided:
         bad = [f for f in assessment.findings if f.verdict is not Verdict.PASS and level in (None, f.level)]
         return bool(bad) and all(any(s.covers(f.model, f.level) for s in mine) for f in bad)
 
+    def newest(self, numbers: Iterable[str]) -> str:
+        """Return the day on which the newest decision about some objects was written down; "" for none."""
+        return max((s.decision.recorded[:10] for number in numbers for s in self._of.get(number, ())), default="")
+
     def all(self) -> tuple[DecisionView, ...]:
         """Return all decisions."""
         return tuple(self._view(s) for mine in self._of.values() for s in mine)

@@ -28,6 +28,7 @@ from pipeline.records import (
     Verdict,
 )
 from pipeline.records.result import BOUNDS
+from pipeline.report.assumed import assumed, rejected, rule_words
 from pipeline.report.by_hand import by_hand
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
@@ -211,6 +212,7 @@ class Sayings:
         self._numbers: Memory[NumberView] = Memory()
         self._origins: Memory[str] = Memory()
         self._assumed: Memory[str] = Memory()
+        self._rejected: Memory[str] = Memory()
 
     def finding(self, f: Finding) -> FindingView:
         """Return a finding in words.
@@ -309,12 +311,15 @@ class Sayings:
         span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
         text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
         # As among the assumptions of the object, where the same text is named once.
-        note = self.assumed(e.note) if e.origin is Origin.ASSUMED else clean(e.note)
-        return NumberView(text, self.origin(e.origin), note, clean(e.source))
+        return NumberView(text, self.origin(e.origin), self.assumed(e.note), clean(e.source))
+
+    def rejected(self, text: str) -> str:
+        """Say which measure was passed over and why, in the language and the lengths of the reader."""
+        return self._rejected.had(text, lambda: rejected(clean(text), self._units))
 
     def assumed(self, text: str) -> str:
         """Say what was assumed, in the language and the lengths of the reader."""
-        return self._assumed.had(text, lambda: self._units.restated(said(clean(text))))
+        return self._assumed.had(text, lambda: assumed(clean(text), self._units))
 
 
 def taken_words(scene: Scene) -> str:
@@ -376,7 +381,7 @@ class Describer:
             worth=worth_words(scene, worth) if worth.terms else "",
             object_class=words(clean(scene.object_class)),
             taken=taken_words(scene),
-            rule=_rule_words(clean(scene.rule)),
+            rule=rule_words(clean(scene.rule)),
             support=held(scene),
             place=clean(item.case),
             furniture=furniture(scene),
@@ -423,7 +428,7 @@ class Describer:
             sentence=clean(self._units.fill(said(r.sentence), values, where, by_hand(self._units))) + left_over(r),
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
-            rejected=tuple(clean(text) for text in r.rejected),
+            rejected=tuple(self._sayings.rejected(text) for text in r.rejected),
             source=clean(r.source),
         )
 
@@ -488,10 +493,3 @@ class Describer:
         listed = spots.setdefault(mark.chart, [])
         if spot not in listed:
             listed.append(spot)
-
-
-def _rule_words(rule: str) -> str:
-    """Return by which rule an object is of its class: the rule's name, and in the reader's language why."""
-    name, colon, why = rule.partition(": ")
-    told, bracket, found = why.rpartition(" (")
-    return f"{name}{colon}{said(told) if bracket else said(why)}{bracket}{found}"

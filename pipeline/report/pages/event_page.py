@@ -208,7 +208,7 @@ def _facts(answer: Answer, quake: ReportedEarthquake, distance_km: float | None)
     if quake.magnitude is not None:
         facts.append((_("Magnitude"), f"{quake.magnitude:.1f}"))
     if distance_km is not None:
-        facts.append((_("Epicentre"), _("{km} km from the museum").format(km=f"{distance_km:.0f}")))
+        facts.append((_("Epicentre"), _("{km}\u00a0km from the museum").format(km=f"{distance_km:.0f}")))
     between = _("{value}; in 9 of 10 cases {low} to {high}")
     facts.append(
         (
@@ -221,7 +221,9 @@ def _facts(answer: Answer, quake: ReportedEarthquake, distance_km: float | None)
         facts.append(
             (
                 _("Peak velocity here"),
-                between.format(value=f"{shaking.pgv_cm_s:.1f} cm/s", low=f"{low:.1f}", high=f"{high:.1f} cm/s"),
+                between.format(
+                    value=f"{shaking.pgv_cm_s:.1f}\u00a0cm/s", low=f"{low:.1f}", high=f"{high:.1f}\u00a0cm/s"
+                ),
             )
         )
     facts.append((_("From"), clean(shaking.origin)))

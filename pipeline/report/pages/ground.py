@@ -45,7 +45,7 @@ def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units
         source=clean(motion.source),
         licence=clean(motion.licence),
         approved=approval(motion),
-        sampling=_("%(samples)s samples, %(step)s s apart, %(duration)s s")
+        sampling=_("%(samples)s samples, %(step)s\u00a0s apart, %(duration)s\u00a0s")
         % {
             "samples": count(motion.samples),
             "step": local(f"{motion.dt:.6g}"),

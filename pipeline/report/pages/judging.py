@@ -167,9 +167,9 @@ def _goodness(f: Fragility) -> str:
         said_so += " " + told % {"deviance": local(f"{f.deviance:.1f}"), "degrees": count(f.degrees), "share": share}
     if f.median_pgv is not None:
         told = (
-            _("By peak velocity, in which the motions differ less: %(at)s cm/s.")
+            _("By peak velocity, in which the motions differ less: %(at)s\u00a0cm/s.")
             if f.measure == "pgv"
-            else _("By peak velocity: %(at)s cm/s.")
+            else _("By peak velocity: %(at)s\u00a0cm/s.")
         )
         said_so += " " + told % {"at": significant(100.0 * f.median_pgv, 2)}
     return said_so

@@ -5,9 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from pipeline.records import Band, Brief, DecisionKind, NewsKind, ObjectChange, RunChanges, Settled, State
-from pipeline.report.language import _, ngettext, parted, said
+from pipeline.records import Band, Brief, DecisionKind, NewsKind, ObjectChange, Ruled, RunChanges, Settled, State
+from pipeline.report.language import _, moment, ngettext, parted, said
 from pipeline.report.pages.chances import band_word, class_title
+from pipeline.report.pages.house_words import stated_told, word_told
 from pipeline.report.pages.survey_words import missing_words
 from pipeline.report.pages.views import Pointer
 from pipeline.report.text import clean, count, plain, short, words
@@ -40,6 +41,8 @@ class NewsLine:
         Where the report has it.
     text : str
         What follows its title, with the colon or the bracket that it begins with.
+    by : str
+        Who said what was done about it, and when; "" where that is in the text or unknown.
     """
 
     kind: NewsKind
@@ -49,11 +52,17 @@ class NewsLine:
     gallery: str
     view: Pointer | None
     text: str
+    by: str = ""
 
     @property
     def sentence(self) -> str:
         """The line as a sentence, for places without markup."""
-        return plain(f"{self.head}: {self.number} {self.title}".rstrip() + f"{self.text}.")
+        return plain(f"{self.head}: {self.number} {self.title}".rstrip() + self.ended)
+
+    @property
+    def ended(self) -> str:
+        """The text with its full stop: one, where it ends in somebody's initials."""
+        return self.text if self.text.endswith(".") else f"{self.text}."
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,12 +142,17 @@ def kept_view(kept: Mapping[str, Any]) -> NewsView:
 
 
 def _of_row(row: Mapping[str, Any]) -> ObjectChange:
-    told = {field.name: row[field.name] for field in fields(ObjectChange)}
+    # An earlier version of Kouros told of no house rules.
+    told = {field.name: row[field.name] for field in fields(ObjectChange) if field.name != "ruled"}
+    told["ruled"] = row.get("ruled", ())
     for side in ("before", "after"):
         known = told[side]
         if known is not None:
             told[side] = Brief(**known | {"state": None if known["state"] is None else State(known["state"])})
     told |= {"decided": tuple(Settled(**one) for one in told["decided"]), "fields": tuple(told["fields"])}
+    told["ruled"] = tuple(
+        Ruled(**one | {"classes": tuple(one["classes"]), "about": tuple(one["about"])}) for one in told["ruled"]
+    )
     return ObjectChange(**told)
 
 
@@ -228,6 +242,7 @@ def news_line(one: ObjectChange, view: Pointer | None = None) -> NewsLine:
         short(one.gallery, _TITLE) or _("no gallery recorded"),
         view,
         _text(kind, one),
+        _by(one),
     )
 
 
@@ -341,7 +356,37 @@ def _why(one: ObjectChange) -> str:
     if not told and one.fields:
         named = [words(clean(name)) for name in one.fields[:_FIELDS]] + ["…"] * (len(one.fields) > _FIELDS)
         told = [_("its record changed: %(fields)s") % {"fields": ", ".join(named)}]
+    if not one.installed:
+        told += map(_rule, one.ruled)
     return ", ".join(told)
+
+
+def _by(one: ObjectChange) -> str:
+    """Say who said what is told of a measure that is installed, and when; "" where nothing is."""
+    made = next((d for d in one.decided if d.new and d.measure and d.date), None)
+    if made is None:
+        return ""
+    return _("said by %(who)s, %(date)s") % {"who": short(made.who, 60), "date": moment(clean(made.date))}
+
+
+def _rule(one: Ruled) -> str:
+    """Say which house rule holds for an object, or no longer: what for, what it states, who says so and when."""
+    phrase = (
+        _("house rule for %(whom)s: %(what)s, by %(who)s, %(date)s")
+        if one.new
+        else _("no longer the house rule for %(whom)s: %(what)s, by %(who)s, %(date)s")
+    )
+    whom = ", ".join([*map(class_title, one.classes), *map(clean, one.about)])
+    what = ", ".join(
+        f"{stated_told(name)}: {word_told(name, word)}" if word else stated_told(name)
+        for name, word in one.states.items()
+    )
+    return phrase % {
+        "whom": short(whom, _TITLE),
+        "what": short(what, 120),
+        "who": short(one.who, 60),
+        "date": moment(clean(one.date)),
+    }
 
 
 def to_do(brief: Brief) -> str:

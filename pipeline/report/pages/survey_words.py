@@ -66,7 +66,7 @@ def survey_sentence(tally: Tally, seconds: float) -> str:
         )
         told.append(others % {"count": count(tally.waste)})
     if seconds:
-        told.append(_("Finding this out took %(seconds)s s.") % {"seconds": local(f"{seconds:.1f}")})
+        told.append(_("Finding this out took %(seconds)s\u00a0s.") % {"seconds": local(f"{seconds:.1f}")})
     return " ".join(told)
 
 

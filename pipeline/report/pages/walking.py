@@ -69,6 +69,8 @@ class WalkView:
         No object is in both.
     left, unknown : tuple of str
         Numbers of the other objects: of those that need nothing now, and of those that cannot be assessed.
+    decided : str
+        The day of the newest decision that it counts (ISO 8601); "" for none.
     """
 
     gallery: str
@@ -77,6 +79,7 @@ class WalkView:
     measure: tuple[WalkRow, ...]
     left: tuple[str, ...] = ()
     unknown: tuple[str, ...] = ()
+    decided: str = ""
 
 
 def walk_view(
@@ -128,7 +131,8 @@ def walk_view(
     )
     unknown = tuple(view.number for view in others if view.state is State.UNKNOWN and not view.settled)
     left = tuple(view.number for view in others if view.number not in unknown)
-    return WalkView(name, page, act, measure, left, unknown)
+    newest = decided.newest([found.scene.item.object_number for found, _view in pairs])
+    return WalkView(name, page, act, measure, left, unknown, newest)
 
 
 def _advice(found: Assessment, decided: Decided) -> Recommendation | None:

@@ -1,0 +1,134 @@
+"""The phrases in which a run says what it assumed, where its numbers come from, and why measures were passed over."""
+
+from pipeline.records.phrase import Clause
+
+SUPPORT = Clause("support: {support}, assumed for: {told}")
+MOUNT = Clause("mount: it {mount}, assumed for: {told}")
+NOT_RECORDED = Clause("not recorded")
+HANGING = Clause("hanging: {ways}")
+HANGING_NOT_RECORDED = Clause("how it hangs is not recorded")
+HANGING_RECORDED = Clause("hanging: {ways}, as recorded")
+HANGING_STATED = Clause("hanging: {ways}, by the house rule for {rule}")
+HANGING_BY_CORD = Clause(
+    "hanging: by a wire or cord, for it hangs from further above its centre than its upper edge is"
+)
+OTHER_CLASS = Clause("its class is not certain: {told} is possible ({chance:-~2})")
+SAY_CLASS = Clause("say what it is")
+
+SIZE = Clause("{size} not recorded: {share:-} of its {of}, as is usual, assumed for: {told}")
+SHARE = Clause("{what}: {share:-} of its {of}, assumed for: {told}")
+BEARS = Clause("{share:-} of its base bears, assumed: {contact}")
+ROUND = Clause("{size} not recorded: taken as round")
+SECTION_RECORDED = Clause("section: {shape}, as recorded")
+SECTION_UNKNOWN = Clause("section: the recorded shape {shape} is not known, and not used")
+SOLID = Clause(
+    "section: taken as solid from {mass:kg~2} on and as hollow below, its area with its mass: it is of metal"
+)
+POLYGON = Clause("contact polygon, as recorded")
+POLYGON_LEAST = Clause("contact polygon, as recorded: {value:m~4}, or {least:m~4} by the least that it may be")
+TILTED = Clause("half width: {slope:-~3} times the height of the centre of gravity, by a tilt test")
+LEVER = Clause("lever: from the {start} to the centre of gravity")
+LEANS = Clause("it leans {lean:°} from upright, assumed")
+LEANS_ON = Clause("height of the centre of gravity: it leans on its {size}")
+
+GRIP = Clause("grip of its mount: {grip:-} times its weight sideways, assumed: it {mount}")
+OFF_ITS_MOUNT = Clause("clearance: it comes off its mount once it has moved {room:cm} on it, assumed")
+CLEARANCE = Clause("clearance: {room:cm} to neighbour, wall or edge, assumed for: {told}")
+FRICTION = Clause("friction: {friction:-}, {tables} for {material} on {surface}")
+NOT_MEASURED = Clause("not measured")
+NO_HARM_BY_ROCKING = Clause("rocking itself is not taken to harm it, assumed for: {told}")
+
+MASS_OF_FRAMED = Clause("mass: {mass:kg} for each square metre of a framed work, assumed")
+MASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed")
+MASS_OF_CLASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline ({aside}), assumed")
+MASS_OF_METAL = Clause(
+    "mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed for what is made of metal"
+)
+STRESS = Clause("allowable stress: {material}, {stress:MPa}, condition factor {factor:-}")
+STRESS_UNSEEN = Clause("allowable stress: {material}, {stress:MPa}, condition factor 1 (not recorded)")
+CONCENTRATION = Clause("stress where its held base ends: {times:-} times the nominal, assumed for what does not yield")
+FREQUENCY = Clause(
+    "frequency: {frequency:Hz~2}, as of a cantilever of {material} of {modulus:GPa}, "
+    "as slender as its critical section over {share:-} of its height, {times:-} times as stiff as on a perfect clamp"
+)
+HELD_WHILE_IT_BENDS = Clause("its base is taken as held while it bends, estimated")
+
+LENGTH_FROM_HOOK = Clause(
+    "length from hook to centre of gravity: half its height, assumed for: hung from its upper edge"
+)
+OTHER_HOOKS = Clause("a hook further down gives half of that, a cord from a rail up to {more:m} more")
+NO_DAMPING = Clause("damping: none, as the paper takes it for chandeliers")
+DAMPING_ON = Clause("damping of {back} on {wall} ({tables})")
+DAMPING_LEAST = Clause("damping against the wall: {back} on {wall}, the least of {tables}")
+SURFACES_NOT_RECORDED = Clause("wall and back surfaces not recorded")
+OWN_DAMPING = Clause("damping of the object itself: {damping:%}, assumed")
+HOOK_DEPTH = Clause("depth of its hooks: {span:m~3}, assumed for {ways}")
+HOOK_HEIGHT = Clause("height of the hooks above its centre of gravity: {span:m~3}, assumed for {ways}")
+HANGERS_BEAR = Clause("what its hangers bear, times its weight: {span:-~3}, assumed for {ways}")
+SWING_AND_SLAP = Clause("its load by swing and slap: {span:-~3}, assumed for {ways}")
+OFFSET_BY_DEPTH = Clause("centre of gravity in front of its back: {offset:m~3}, of its depth of {depth:m}, assumed")
+OFFSET = Clause("centre of gravity in front of its back: {offset:m~3}, depth not recorded, assumed")
+REBOUND = Clause("rebound from wall and hooks: {rebound:-} of its speed, assumed")
+GYRATION_OF_PLATE = Clause("radius of gyration: a plate")
+
+FURNITURE = Clause("furniture: {furniture}, assumed for: {about}, usual_furniture.csv")
+FURNITURE_FROM = Clause("furniture: {furniture}, assumed for: {about} from {height:m} on, usual_furniture.csv")
+FURNITURE_RECORDED = Clause("furniture: {furniture}, as recorded")
+FURNITURE_STATED = Clause("furniture: {furniture}, by the house rule for {rule}")
+FURNITURE_NAMED = Clause("furniture: {furniture}, for its record names the case or plinth {case}")
+FURNITURE_SHAKES = Clause("of {frequency:Hz}, or stiff, {table}")
+FASTENED = Clause("fastened")
+FASTENED_RECORDED = Clause("fastened, as recorded")
+FASTENED_STATED = Clause("fastened, by the house rule for {rule}")
+FASTENED_TAKEN = Clause("taken as fastened, which nobody says")
+LOOSE_RECORDED = Clause("not fastened, as recorded")
+LOOSE_STATED = Clause("not fastened, by the house rule for {rule}")
+LOOSE_TAKEN = Clause("taken as not fastened, which nobody says")
+FURNITURE_DAMPING = Clause("damping of its furniture: {damping:-}, {table} for {furniture}")
+FURNITURE_LEVEL = Clause("level: off by up to {angle:°} either way, {table} for {furniture}")
+FURNITURE_HALF_WIDTH = Clause("from the middle of its base to its edge: {span:m}, {table} for {furniture}")
+FURNITURE_CG = Clause("height of its centre of gravity: {span:m}, {table} for {furniture}")
+FURNITURE_FRICTION = Clause("friction on its floor: {span:-}, {table} for {furniture}")
+FURNITURE_HEIGHT = Clause("it stands {height:m} above the floor, {table} for {furniture}")
+
+STATED = Clause("{what}: by the house rule for {rule}")
+FAILED = Clause("{without}: Kouros failed, which is not your fault ({words})")
+TELL_MAKERS = Clause("please tell its makers")
+
+REACHES = Clause("{check} reaches {times:-~2} times what is allowed by the best estimates")
+MAY_BE_MORE = Clause("{check} may still be more than is allowed")
+NOTHING_LIMITS = Clause("nothing limits {check} then")
+NOTHING_LEFT = Clause("nothing would be left of what {check} is allowed")
+MAY_REACH = Clause("{check} may still reach {times:-~2} times what is allowed")
+MAY_REACH_AND_DOES = Clause(
+    "{check} may still reach {times:-~2} times what is allowed, {best:-~2} times by the best estimates"
+)
+HARM_REMAINS = Clause("harm would remain with a probability of {chance:%~0f}")
+HARM_REMAINS_WITH_ROOM = Clause("with {room:cm~0f} harm would remain with a probability of {chance:%~0f}")
+NOT_ENOUGH = Clause("{check} is not enough")
+MORE_THAN_BORNE = Clause("{check} is more than it bears")
+NEEDS_ROOM = Clause("it would need {room:cm~0f} of room, more than the {allowed:cm~0f} allowed")
+NEEDS_ROOM_AROUND = Clause("it would need {room:cm~0f} of room around its plate, more than the {allowed:cm~0f} allowed")
+HAS_NO_ROOM = Clause("it would need {room:cm~0f} of room, more than the {allowed:cm~0f} that it can have")
+PLATE = Clause("it would need a plate {width:cm~0f} wide")
+PLATFORM = Clause("its platform would have to be {width:cm~0f} wide")
+LENGTH_ALLOWED = Clause("{limit:cm~0f} is allowed")
+BALLAST = Clause("it would need {share:%~0f} of its mass")
+SHARE_ALLOWED = Clause("{limit:%~0f} is allowed")
+LARGER_SECTION = Clause("its section would have to be {times:-~2} times as large")
+TIMES_ALLOWED = Clause("{limit:-} is allowed")
+TOO_LOW_TO_BRACE = Clause("a brace is out of proportion for what is lower than {height:cm~0f}")
+HARMS = Clause("it harms {material}")
+HOLDS_AT_MOST = Clause("at most it holds {times:-~2} times what is needed, and {asked:-} times are asked")
+SHARES_CASE = Clause("{number} shares its case: {refusal}")
+NO_ISOLATOR_UNDER = Clause(
+    "the catalogue has no horizontal isolator that keeps to its stroke and none under {stroke:cm~0f}"
+)
+NO_ISOLATOR_FOR_ALL = Clause(
+    "no isolator of the catalogue passes on little enough within its stroke for all {objects:-} objects of its case"
+)
+
+PHRASES = tuple(
+    sorted((one for one in globals().values() if isinstance(one, Clause)), key=lambda one: one.letters, reverse=True)
+)
+"""All of them, those with the most words of their own first: they say more than others that match the same clause."""
