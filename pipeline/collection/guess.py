@@ -12,7 +12,7 @@ from tomlkit.items import Table
 
 from pipeline.collection.display_words import flag_of, says_away
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.guessing.columns import Column, candidates, usual_place
+from pipeline.collection.guessing.columns import Column, candidates, material_and_technique, usual_place
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
 from pipeline.collection.guessing.names import bare, is_side, misspelt, named, unit_in
@@ -130,8 +130,8 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         else:
             columns = columns_in(path, source)
     columns = objects_of(name, source, columns, told)
-    decimal = told.choices.get("decimal") or decimal_of(columns)
-    if decimal == "," and source.get("delimiter") != ",":
+    decimal = told.choices.get("decimal") or decimal_of(columns, parted=source.get("delimiter") == ",")
+    if decimal == ",":
         source["decimal"] = decimal
         told.sure.append("decimal comma, as most numbers have it")
     return _written(name, source, columns, told)
@@ -185,7 +185,13 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     usual = None if "gallery" in told.choices else usual_place(columns, found)
     if usual is not None:
         told.questions[:] = [question for question in told.questions if question.key != "gallery"]
-    fields, used = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery")).mapped(found)
+    both = () if "medium" in told.choices else material_and_technique(able.get("medium", ()))
+    if both:
+        told.questions[:] = [question for question in told.questions if question.key != "medium"]
+        told.sure.append(f"the medium is {' and '.join(repr(column.name) for column in both)} together")
+    fields, used = Fields(
+        columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both
+    ).mapped(found)
     document["columns"] = fields
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")
@@ -271,7 +277,7 @@ def _chosen(
     if number is None:
         found["object_number"] = number = _unique(name, columns)
         told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
-        likely = tuple(c.name for c in columns if len(set(c.filled)) > 0.9 * len(c.values))
+        likely = tuple(c.name for c in columns if len(set(c.filled)) > 0.9 * len(c.values) and c.numbering)
         told.questions.append(Question("object_number", "which column has the object numbers?", likely, number.name))
     elif len(able.get("object_number", ())) > 1 and "object_number" not in told.choices:
         likely = tuple(column.name for column in able["object_number"])
@@ -319,9 +325,11 @@ def _column(name: str, columns: Sequence[Column], key: str, wanted: str) -> Colu
 
 
 def _unique(name: str, columns: Sequence[Column]) -> Column:
-    for column in columns:
-        if column.filled and len(set(column.filled)) == len(column.values):
-            return column
+    """Return the column that tells rows apart, and is no prose, size or address if there is another one."""
+    able = [column for column in columns if column.filled and len(set(column.filled)) == len(column.values)]
+    numbers = [column for column in able if column.numbering]
+    if able:
+        return (numbers or able)[0]
     there = ", ".join(repr(column.name) for column in columns[:30])
     raise CollectionError(
         f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
-from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, named
+from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, complements, named
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
@@ -21,6 +21,9 @@ NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 _SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d", re.DOTALL)
 FEWEST = 10
 """Cells that must hold the same before a column is taken to tell nothing."""
+
+_LONGEST = 40
+"""Characters up to which a text is rather the number of an object than a sentence (judgement)."""
 
 _SOME = 200
 """Cells from which it is told what a column holds."""
@@ -89,6 +92,13 @@ class Column:
     def units(self) -> float:
         """Share of its texts that name a unit."""
         return _share(self.filled, unit_of)
+
+    @cached_property
+    def numbering(self) -> bool:
+        """Whether most of its texts may be numbers of objects: short, with a digit, neither sizes nor addresses."""
+        some = self.filled[:_SOME]
+        short = sum(len(text) <= _LONGEST and any(map(str.isdigit, text)) and "://" not in text for text in some)
+        return bool(some) and short >= 0.9 * len(some) and self.dimensional < 0.5
 
     @property
     def says_one(self) -> bool:
@@ -203,6 +213,23 @@ def usual_place(columns: Sequence[Column], found: dict[str, Column]) -> Column |
         return None
     found["gallery"] = able[now[1]][1]
     return usual
+
+
+def material_and_technique(able: Sequence[Column]) -> tuple[Column, ...]:
+    """Return the likeliest column of a medium and the one that completes it, in the order of the source's fields.
+
+    Parameters
+    ----------
+    able : sequence of Column
+        That may be the medium, the likeliest first.
+
+    Returns
+    -------
+    tuple of Column
+        Empty where one column tells both, or no other one tells what is missing.
+    """
+    other = next((one for one in able[1:] if complements(able[0].name, one.name) and one.filled), None)
+    return () if other is None else (able[0], other)
 
 
 def internal(column: Column) -> bool:

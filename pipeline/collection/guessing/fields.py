@@ -38,6 +38,7 @@ _NAMING = 0.5
 
 _TENTHS = re.compile(r"\d*[.,][1-46-9]")
 _SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _COMMA = re.compile(r"(?<![\d,.])\d+,\d{1,2}(?![\d,.])", re.ASCII)
 _POINT = re.compile(r"(?<![\d,.])\d+\.\d{1,2}(?![\d,.])", re.ASCII)
 
@@ -64,12 +65,15 @@ class Question:
     taken: str
 
 
-def decimal_of(columns: Sequence[Column]) -> str:
-    """Return the decimal mark that most numbers have, of cells and of dimension texts."""
+def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:
+    """Return the decimal mark that most numbers have, of cells and of dimension texts.
+
+    parted : cells are parted by commas; there a number of thousands may have been put into quotes as well ("1,250")
+    """
     commas = points = 0
     for column in columns:
         for number in column.numbers:
-            commas += "," in number
+            commas += "," in number and not (parted and _THOUSANDS.fullmatch(number))
             points += "." in number
         if not column.numeric and column.dimensional > 0.2:
             for text in column.filled:
@@ -157,6 +161,8 @@ class Fields:
         Of the usual places of objects, which counts where that of the places now is empty.
     place : Column or None
         Of the places now.
+    medium : tuple of Column
+        Of materials and of techniques, where a file tells each in a column of its own.
     """
 
     columns: Sequence[Column]
@@ -165,6 +171,7 @@ class Fields:
     questions: list[Question]
     usual: Column | None = None
     place: Column | None = None
+    medium: tuple[Column, ...] = ()
 
     def mapped(self, found: Mapping[str, Column]) -> tuple[tomlkit.items.Table, list[Column]]:
         """Return the section, and the columns that it reads.
@@ -202,6 +209,10 @@ class Fields:
             if name == "gallery" and self.usual is not None:
                 entry = self._or_usual(column, self.usual)
                 used.append(self.usual)
+            if name == "medium" and self.medium:
+                entry = tomlkit.table()
+                entry["columns"], entry["separator"] = [one.name for one in self.medium], ", "
+                used += (one for one in self.medium if one is not column)
             if entry is not None:
                 out[name] = entry
                 used.append(column)
@@ -386,9 +397,13 @@ class Fields:
 
 
 def _unit_column(column: Column, columns: Sequence[Column], units: Mapping[str, float]) -> Column | None:
-    """Return the column that tells the units of another: the next one to its right of which that holds."""
-    after = list(columns)[[c is column for c in columns].index(True) + 1 :]
-    for other in after:
-        if other.units >= 0.9 and {unit_of(text) for text in other.distinct} <= set(units) | {None}:
-            return other
-    return None
+    """Return the column that tells the units of another: the next one to its right of which that holds, else the only
+    one that there is."""
+    at = [c is column for c in columns].index(True)
+    able = [
+        (where, other)
+        for where, other in enumerate(columns)
+        if other.units >= 0.9 and {unit_of(text) for text in other.distinct} <= set(units) | {None}
+    ]
+    after = [other for where, other in able if where > at]
+    return after[0] if after else able[0][1] if len(able) == 1 else None

@@ -58,6 +58,13 @@ _ALMOST = 0.9
 _WEAK = 1000
 """Rank of a name that is only part of what stands in the head."""
 
+_DISPLAYED = "display "
+"""Before a name: that its text is the one to be shown, as in "DISPLAY_DENOMINATION"."""
+
+_STUFF = re.compile(r"mat(?:eri|ier)|werkstoff|malzeme|tworzyw|υλικ|материал|材質|素材|재질")
+_CRAFT = re.compile(r"te(?:ch|k|c|h|hn)ni|τεχνικ|техник|tekniik|技法|기법")
+"""Parts of the names of columns that tell what a thing is made of, and how; folded."""
+
 _FORMER = frozenset(
     {
         *("former", "previous", "old", "other", "alt", "alte", "altes", "fruhere", "fruherer", "ancien", "ancienne"),
@@ -237,15 +244,23 @@ def named(name: str) -> ColumnMeaning | None:
         return ColumnMeaning(name, 0)
     if any(_ELSEWHERE.intersection(plain(above).split()) for above in path_of(name)[:-1]):
         return None
-    for form in _forms(name):
+    forms = [*_forms(name)]
+    forms += [form.removeprefix(_DISPLAYED) for form in forms if form.startswith(_DISPLAYED)]
+    for form in forms:
         found = _names().get(form)
         if found is not None:
             return found
-    for form in _forms(name):
+    for form in forms:
         found = _singular_names().get(_singular(form))
         if found is not None:
             return found
     return _within(name)
+
+
+def complements(name: str, other: str) -> bool:
+    """Whether of two columns one is named for materials alone, and the other for techniques alone."""
+    said = [(bool(_STUFF.search(plain(one))), bool(_CRAFT.search(plain(one)))) for one in (name, other)]
+    return sorted(said) == [(False, True), (True, False)]
 
 
 def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
