@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.analysis.rules import PICTURES, Readings, RuleMatch, fold, stuff, words_of
-from pipeline.analysis.shapes import SHAPES
+from pipeline.analysis.shapes import SHAPES, faceless
 from pipeline.records import Item
 from pipeline.tables import table
 from pipeline.tables.assumed_rows import WHEN_HELD
@@ -277,7 +277,7 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
     if not chances:
         return None
     first = chances[0]
-    if is_alone(item) and not read.outright and SHAPES["panel"](item):
+    if is_alone(item) and not read.outright and SHAPES["panel"](item) and not faceless(item):
         flat = next(one for one in chances if one.object_class in PICTURES)
         if PICTURED_PARTS.search(item.dimensions[:_READ]):
             return flat
