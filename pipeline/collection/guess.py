@@ -275,9 +275,10 @@ def _chosen(
     _settle_number(able.get("object_number", ()), found, told)
     number = found.get("object_number")
     if number is None:
-        found["object_number"] = number = _unique(name, columns)
+        found["object_number"] = number = _unique(name, columns, found)
         told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
-        likely = tuple(c.name for c in columns if len(set(c.filled)) > 0.9 * len(c.values) and c.numbering)
+        others = [column for column in columns if column is number or column not in found.values()]
+        likely = tuple(c.name for c in others if len(set(c.filled)) > 0.9 * len(c.values) and c.numbering)
         told.questions.append(Question("object_number", "which column has the object numbers?", likely, number.name))
     elif len(able.get("object_number", ())) > 1 and "object_number" not in told.choices:
         likely = tuple(column.name for column in able["object_number"])
@@ -324,12 +325,12 @@ def _column(name: str, columns: Sequence[Column], key: str, wanted: str) -> Colu
     raise CollectionError(f"{name}: --choose {key}: there is no column {wanted!r}; its columns are {there}")
 
 
-def _unique(name: str, columns: Sequence[Column]) -> Column:
-    """Return the column that tells rows apart, and is no prose, size or address if there is another one."""
+def _unique(name: str, columns: Sequence[Column], found: Mapping[str, Column]) -> Column:
+    """Return the column that tells rows apart: what may be a number first, prose and what is another field last."""
     able = [column for column in columns if column.filled and len(set(column.filled)) == len(column.values)]
-    numbers = [column for column in able if column.numbering]
     if able:
-        return (numbers or able)[0]
+        fields = {id(column) for column in found.values()}
+        return min(able, key=lambda one: (id(one) in fields, not one.numbering, 0 if one.numbering else one.length))
     there = ", ".join(repr(column.name) for column in columns[:30])
     raise CollectionError(
         f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from statistics import median
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
@@ -99,6 +100,11 @@ class Column:
         some = self.filled[:_SOME]
         short = sum(len(text) <= _LONGEST and any(map(str.isdigit, text)) and "://" not in text for text in some)
         return bool(some) and short >= 0.9 * len(some) and self.dimensional < 0.5
+
+    @cached_property
+    def length(self) -> float:
+        """Characters of its texts in the middle."""
+        return median(map(len, self.filled)) if self.filled else 0.0
 
     @property
     def says_one(self) -> bool:

@@ -24,6 +24,9 @@ USUAL_MM = 150
 """Median of whole numbers from which lengths are taken to be in millimetres: half of all objects are no metre and a
 half."""
 
+USUAL_M = 1.5
+"""Median of lengths up to which they may be in metres."""
+
 MOST_WORDS = 30
 """Different texts that a column of flags has at most."""
 
@@ -37,6 +40,7 @@ _NAMING = 0.5
 """Share of a column's texts that name a unit from which each is read with its own."""
 
 _TENTHS = re.compile(r"\d*[.,][1-46-9]")
+_HUNDREDTHS = re.compile(r"\d[.,]\d{2,3}")
 _SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _COMMA = re.compile(r"(?<![\d,.])\d+,\d{1,2}(?![\d,.])", re.ASCII)
@@ -390,10 +394,19 @@ class Fields:
             unit, why = "in", "inches are taken, for they have eighths and sixteenths"
         elif whole > 0.98 * len(numbers) and median(float(n.replace(",", ".")) for n in numbers) >= USUAL_MM:
             unit, why = "mm", "millimetres are taken, for they are large and whole"
+        elif _in_metres(numbers):
+            unit, why = "m", "metres are taken, for most are small and go to the centimetre"
         names = ", ".join(repr(column.name) for column in untold.values())
         self.doubts.append(f"no unit is told for {names}: {why}; --choose unit=mm (cm, in, ...) takes another")
         self.questions.append(Question("unit", f"in which unit are {names}?", tuple(units_of("height_m")), unit))
         return unit
+
+
+def _in_metres(numbers: Sequence[str]) -> bool:
+    """Whether lengths are rather metres: in centimetres hardly anybody writes hundredths, 0.83, of what is small."""
+    fine = sum(bool(_HUNDREDTHS.fullmatch(number)) for number in numbers)
+    small = median(float(number.replace(",", ".")) for number in numbers) < USUAL_M if numbers else False
+    return len(numbers) >= FEWEST and fine >= 0.6 * len(numbers) and small
 
 
 def _unit_column(column: Column, columns: Sequence[Column], units: Mapping[str, float]) -> Column | None:
