@@ -45,7 +45,9 @@ _OF_SET = re.compile(
     r"^[^:;,]*\b(?:set|service|servizio|servicio|servico|garniture|garnitur|garnitura)\s*:\s*(?=[^\W\d_])"
 )
 """What stands ahead of a part of a set: Child's tea service: plate."""
-_OF_MANY = re.compile(r"^\s*(?:ensemble|conjunto|insieme|suite|lot|lote)\s+(?:de|di|do|da|dos|das|of)\s|^\s*ensemble\s+d['’]")
+_OF_MANY = re.compile(
+    r"^\s*(?:ensemble|conjunto|insieme|suite|lot|lote)\s+(?:de|di|do|da|dos|das|of)\s|^\s*ensemble\s+d['’]"
+)
 """What says that there are several of the things named behind it: Ensemble de tables consoles."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
 """What a maker calls a thing, which is no model of it: Clock Model No. 101."""

@@ -12,7 +12,13 @@ from tomlkit.items import Table
 
 from pipeline.collection.display_words import flag_of, says_away
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.guessing.columns import Column, candidates, material_and_technique, usual_place
+from pipeline.collection.guessing.columns import (
+    Column,
+    candidates,
+    material_and_technique,
+    prose_of_dimensions,
+    usual_place,
+)
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
 from pipeline.collection.guessing.names import bare, is_side, misspelt, named, unit_in
@@ -189,14 +195,21 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if both:
         told.questions[:] = [question for question in told.questions if question.key != "medium"]
         told.sure.append(f"the medium is {' and '.join(repr(column.name) for column in both)} together")
-    fields, used = Fields(
-        columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both
-    ).mapped(found)
+    fields, used = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both).mapped(
+        found
+    )
     document["columns"] = fields
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")
     if wanted is not None:
         texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
+    if not texts and wanted is None and not {"height_m", "width_m", "depth_m", "diameter_m"} & set(fields):
+        texts = [column for column in (prose_of_dimensions(columns, used),) if column is not None]
+    if wanted is None and texts and texts[0].prose:
+        told.doubts.append(
+            f"no column is for sizes: those in the sentences of {texts[0].name!r} are read, look at each; --choose "
+            "dimensions=- leaves them"
+        )
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
         units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()

@@ -20,6 +20,8 @@ NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
 _SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d", re.DOTALL)
+_NAMED = ("height", "width", "depth", "diameter", "length")
+
 FEWEST = 10
 """Cells that must hold the same before a column is taken to tell nothing."""
 
@@ -73,6 +75,13 @@ class Column:
         return sum(any(p.unit for p in parse(plain_text(text)).parts) for text in some) / len(some) if some else 0.0
 
     @cached_property
+    def told(self) -> float:
+        """Share of its texts that say of a size which it is, somewhere in their sentences: 12 cm high."""
+        some = self.filled[:_SOME]
+        named = (any(p.unit and p.dimension in _NAMED and not p.assumed for p in parse(text).parts) for text in some)
+        return sum(named) / len(some) if some else 0.0
+
+    @cached_property
     def sized(self) -> float:
         """Share of its texts that hold a number and a word: a size, perhaps in words that are not understood."""
         some = self.filled[:_SOME]
@@ -105,6 +114,12 @@ class Column:
     def length(self) -> float:
         """Characters of its texts in the middle."""
         return median(map(len, self.filled)) if self.filled else 0.0
+
+    @property
+    def prose(self) -> bool:
+        """Whether it holds sentences, and its name does not say that they are of sizes."""
+        what = named(self.name)
+        return self.length > _LONGEST and (what is None or what.field != TEXTS)
 
     @property
     def says_one(self) -> bool:
@@ -293,3 +308,24 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
     best = max(texts, key=lambda c: c.dimensional, default=None)
     return [best] if best is not None and best.dimensional > 0.6 else []
+
+
+def prose_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
+    """Return the column of a file without any for sizes whose sentences tell the most of them.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    used : iterable of Column
+        Those that are fields already.
+
+    Returns
+    -------
+    Column or None
+        None where none tells the sizes of one object in ten.
+    """
+    taken = {id(column) for column in used}
+    able = [column for column in columns if id(column) not in taken and column.prose]
+    best = max(able, key=lambda column: column.told * len(column.filled), default=None)
+    return best if best is not None and best.told * len(best.filled) >= 0.1 * len(best.values) else None
