@@ -10,7 +10,7 @@ from statistics import median
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
-from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, complements, named
+from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, complements, named, tells_material
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
@@ -237,7 +237,7 @@ def usual_place(columns: Sequence[Column], found: dict[str, Column]) -> Column |
 
 
 def material_and_technique(able: Sequence[Column]) -> tuple[Column, ...]:
-    """Return the likeliest column of a medium and the one that completes it, in the order of the source's fields.
+    """Return the likeliest column of a medium and the one that completes it, that of materials first.
 
     Parameters
     ----------
@@ -250,7 +250,7 @@ def material_and_technique(able: Sequence[Column]) -> tuple[Column, ...]:
         Empty where one column tells both, or no other one tells what is missing.
     """
     other = next((one for one in able[1:] if complements(able[0].name, one.name) and one.filled), None)
-    return () if other is None else (able[0], other)
+    return () if other is None else tuple(sorted((able[0], other), key=lambda one: not tells_material(one.name)))
 
 
 def internal(column: Column) -> bool:

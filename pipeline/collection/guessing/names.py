@@ -257,9 +257,14 @@ def named(name: str) -> ColumnMeaning | None:
     return _within(name)
 
 
+def tells_material(name: str) -> bool:
+    """Whether a column is named for materials, and perhaps for techniques too."""
+    return bool(_STUFF.search(plain(name)))
+
+
 def complements(name: str, other: str) -> bool:
     """Whether of two columns one is named for materials alone, and the other for techniques alone."""
-    said = [(bool(_STUFF.search(plain(one))), bool(_CRAFT.search(plain(one)))) for one in (name, other)]
+    said = [(tells_material(one), bool(_CRAFT.search(plain(one)))) for one in (name, other)]
     return sorted(said) == [(False, True), (True, False)]
 
 
