@@ -290,8 +290,8 @@ def _chosen(
     if number is None:
         found["object_number"] = number = _unique(name, columns, found)
         told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
-        others = [column for column in columns if column is number or column not in found.values()]
-        likely = tuple(c.name for c in others if len(set(c.filled)) > 0.9 * len(c.values) and c.numbering)
+        free = [column for column in columns if column is number or column not in found.values()]
+        likely = tuple(c.name for c in free if len(set(c.filled)) > 0.9 * len(c.values) and c.numbering)
         told.questions.append(Question("object_number", "which column has the object numbers?", likely, number.name))
     elif len(able.get("object_number", ())) > 1 and "object_number" not in told.choices:
         likely = tuple(column.name for column in able["object_number"])

@@ -1,8 +1,8 @@
 """Rows of the open data of museums that were not seen before, as they stand there, and what a person reads from them.
 
-From the data sets of the Institut national d'histoire de l'art (Agorha: the Rothschild gifts and the Musée des Monuments
-français of Lenoir), the Museu do Ouro in Sabará (IBRAM, Tainacan), and the Minneapolis Institute of Art; columns of
-prose and addresses of pictures are left out, no cell is changed.
+From the data sets of the Institut national d'histoire de l'art (Agorha: the Rothschild gifts and the Musée des
+Monuments français of Lenoir), the Museu do Ouro in Sabará (IBRAM, Tainacan), and the Minneapolis Institute of Art;
+columns of prose and addresses of pictures are left out, no cell is changed.
 """
 
 from __future__ import annotations
