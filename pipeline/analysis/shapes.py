@@ -46,7 +46,7 @@ def faceless(item: Item) -> bool:
 
 
 def _flat(item: Item) -> bool:
-    return (item.depth_m or 0.0) <= FLAT * max(item.height_m or 0.0, item.width_m or 0.0)
+    return faceless(item) or (item.depth_m or 0.0) <= FLAT * max(item.height_m or 0.0, item.width_m or 0.0)
 
 
 def _panel(item: Item) -> bool:
@@ -71,7 +71,8 @@ def _tall(item: Item) -> bool:
 
 
 def _broad(item: Item) -> bool:
-    face = [size for size in (item.height_m, item.width_m) if size is not None]
+    other = item.depth_m if faceless(item) else item.height_m
+    face = [size for size in (other, item.width_m) if size is not None]
     return max(face, default=0.0) >= BROAD and min(face) >= BAND
 
 

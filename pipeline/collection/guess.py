@@ -195,9 +195,9 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if both:
         told.questions[:] = [question for question in told.questions if question.key != "medium"]
         told.sure.append(f"the medium is {' and '.join(repr(column.name) for column in both)} together")
-    fields, used = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both).mapped(
-        found
-    )
+    second = None if "object_number" in told.choices else _second_number(columns, found)
+    writer = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both, second)
+    fields, used = writer.mapped(found)
     document["columns"] = fields
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")
@@ -301,7 +301,9 @@ def _chosen(
             f"object numbers are taken from {number.name!r}, and not from {others}; --choose object_number=COLUMN "
             "takes another"
         )
-    repeated = len(number.filled) - len(set(number.filled))
+    none = number.blanks if _second_number(columns, found) is not None else ()
+    numbers = [text for text in number.filled if text not in none]
+    repeated = len(numbers) - len(set(numbers))
     if repeated:
         told.doubts.append(
             f"column {number.name!r} repeats {repeated} object numbers: only the first row of each is kept"
@@ -336,6 +338,18 @@ def _column(name: str, columns: Sequence[Column], key: str, wanted: str) -> Colu
             return column
     there = ", ".join(repr(column.name) for column in columns[:80])
     raise CollectionError(f"{name}: --choose {key}: there is no column {wanted!r}; its columns are {there}")
+
+
+def _second_number(columns: Sequence[Column], found: Mapping[str, Column]) -> Column | None:
+    """Return a column of other numbers, where that of the objects' numbers says of several that they have none.
+
+    Whole numbers are rather those of a database than codes of another kind.
+    """
+    fields = {id(column) for column in found.values()}
+    able = [column for column in columns if id(column) not in fields and column.numbering]
+    alone = [column for column in able if len(column.distinct) == len(column.values)]
+    whole = [column for column in alone if all(map(str.isdecimal, column.filled))]
+    return next(iter(whole or alone), None) if found["object_number"].blanks else None
 
 
 def _unique(name: str, columns: Sequence[Column], found: Mapping[str, Column]) -> Column:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -109,6 +110,12 @@ class Column:
         some = self.filled[:_SOME]
         short = sum(len(text) <= _LONGEST and any(map(str.isdigit, text)) and "://" not in text for text in some)
         return bool(some) and short >= 0.9 * len(some) and self.dimensional < 0.5
+
+    @cached_property
+    def blanks(self) -> tuple[str, ...]:
+        """What it says again and again in place of a number: "Sem registro", "s/n"."""
+        often = Counter(text for text in self.filled if not any(map(str.isdigit, text)))
+        return tuple(text for text, times in often.items() if times > 1)
 
     @cached_property
     def length(self) -> float:

@@ -167,6 +167,8 @@ class Fields:
         Of the places now.
     medium : tuple of Column
         Of materials and of techniques, where a file tells each in a column of its own.
+    second : Column or None
+        Of other numbers, for objects of which that of the objects' numbers says only that they have none.
     """
 
     columns: Sequence[Column]
@@ -176,6 +178,7 @@ class Fields:
     usual: Column | None = None
     place: Column | None = None
     medium: tuple[Column, ...] = ()
+    second: Column | None = None
 
     def mapped(self, found: Mapping[str, Column]) -> tuple[tomlkit.items.Table, list[Column]]:
         """Return the section, and the columns that it reads.
@@ -213,6 +216,9 @@ class Fields:
             if name == "gallery" and self.usual is not None:
                 entry = self._or_usual(column, self.usual)
                 used.append(self.usual)
+            if name == "object_number" and self.second is not None:
+                entry = self._or_second(column, self.second)
+                used.append(self.second)
             if name == "medium" and self.medium:
                 entry = tomlkit.table()
                 entry["columns"], entry["separator"] = [one.name for one in self.medium], ", "
@@ -226,6 +232,15 @@ class Fields:
         entry = tomlkit.table()
         entry["columns"], entry["first"] = [column.name, usual.name], True
         self.doubts.append(f"an object's place is {column.name!r}, and where that is empty {usual.name!r}")
+        return entry
+
+    def _or_second(self, column: Column, second: Column) -> tomlkit.items.Table:
+        entry = tomlkit.table()
+        entry["columns"], entry["first"], entry["missing"] = [column.name, second.name], True, list(column.blanks)
+        self.doubts.append(
+            f"column {column.name!r} says {', '.join(map(repr, column.blanks[:4]))} of several objects, which is no "
+            f"number: these have that of {second.name!r}; --choose object_number={column.name} leaves that out"
+        )
         return entry
 
     def _entry(self, name: str, column: Column) -> tomlkit.items.Table | None:
