@@ -15,13 +15,14 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import (
     Column,
     candidates,
+    captions_of_dimensions,
     material_and_technique,
     prose_of_dimensions,
     usual_place,
 )
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
-from pipeline.collection.guessing.names import bare, is_side, misspelt, named, unit_in
+from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named, unit_in
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -204,19 +205,23 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if wanted is not None:
         texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
     if not texts and wanted is None and not {"height_m", "width_m", "depth_m", "diameter_m"} & set(fields):
-        texts = [column for column in (prose_of_dimensions(columns, used),) if column is not None]
-    if wanted is None and texts and texts[0].prose:
-        told.doubts.append(
-            f"no column is for sizes: those in the sentences of {texts[0].name!r} are read, look at each; --choose "
-            "dimensions=- leaves them"
-        )
+        apart = {id(found.get(field)) for field in ("object_number", "gallery", "on_display", "image")}
+        may = [column for column in columns if id(column) not in apart]
+        behind = captions_of_dimensions(may) or prose_of_dimensions(columns, used)
+        if behind is not None:
+            texts = [behind]
+            told.doubts.append(
+                f"no column is for sizes: those in {'the sentences of ' * behind.prose}{behind.name!r} are read, look "
+                "at each; --choose dimensions=- leaves them"
+            )
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
         units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
         if len(units) == 1:
             document["dimensions"]["unit"] = units.pop()
     taken = {id(column) for column in (*used, *texts)}
-    lost = [column for column in columns if id(column) not in taken and column.numeric and is_side(column.name)]
+    left = [column for column in columns if id(column) not in taken and column.numbers]
+    lost = [one for one in left if is_length(one.name) or (one.numeric and is_side(one.name))]
     if lost:
         told.doubts.append(
             f"no field takes the numbers of {', '.join(repr(column.name) for column in lost[:10])}; --choose "

@@ -1,7 +1,8 @@
 """Rows of the open data of museums that were not seen before, as they stand there, and what a person reads from them.
 
 From the data sets of the Institut national d'histoire de l'art (Agorha: the Rothschild gifts and the Musée des
-Monuments français of Lenoir), the Museu do Ouro in Sabará (IBRAM, Tainacan), and the Minneapolis Institute of Art;
+Monuments français of Lenoir), the Museu do Ouro in Sabará, the Museu das Bandeiras and the Museu Regional Casa dos
+Ottoni (IBRAM, Tainacan), and the Minneapolis Institute of Art;
 columns of prose and addresses of pictures are left out, no cell is changed.
 """
 
@@ -155,6 +156,67 @@ def test_a_scroll_with_a_length_and_a_width_hangs(tmp_path: Path) -> None:
     assert (height.value, height.low, height.high) == pytest.approx((1.634, 0.2016, 1.634), rel=1e-3)
     assert "its length of 1.63" in height.note
     assert classify(items["16.675"]).object_class == "framed"
+
+
+HOUSE = """\
+Altura (cm),Classificação,Denominação,Document,Largura (cm),Localização atual,Material,Número de registro,\
+Profundidade (cm),Técnica,Título,Diâmetro (cm),Comprimento (cm)
+"1,82 m",06 Trabalho > 06.10 Equipamento Musical,Piano,37243,146,Exposição de Longa Duração - Sala da Família Ottoni,\
+madeira | marfim | metal,500,63,manufatura,Piano Pleyel,,
+64,02 Artes Visuais/Cinematográfica > 02.6 Pintura,Paisagem (pintura),37241,50,\
+Exposição de Longa Duração - Sala de jantar,tecido | tinta,499,,óleo sobre tela | pintura,Casa dos Ottoni (Serro),,
+42,08 Insígnias,Brasão (desenho),37239,33,,nanquim | papel | tinta,498,,desenho,Brasão da família Ottoni,,
+,08 Insígnias,Medalha comemorativa,37225,,,bronze,494,,cunhagem,,"0,5",
+10,12 Objetos Pessoais > 12.6 Objeto de Auxílio/Conforto Pessoais,Bengala,37195,,Reserva Técnica Museológica,\
+madeira | metal,489,,entalhe | fundição,Bengala,,84
+245,02 Artes Visuais/Cinematográfica > 02.3 Escultura,Estátua Alegórica (réplica),,108,Jardim,bronze,488,47,\
+fundição | modelagem,Saracura/ Garça,,"Pescoço: 67 . Perna: 11 . Bico: 33,5"
+,10 Comunicação > 10.1 Documento,Ofício,37186,,,papel | tinta,484,,impressão,,,
+,03 Objetos Pecuniários,Apólice,37170,,,papel | tinta,479,,impressão | manuscrito,\
+Apólice  de Ações nº 1749- Companhia Mucury,,
+,10 Comunicação > 10.1 Documento,Livreto,37136,,,grampo de ferro | papel | tinta,471,,encadernação | impressão,\
+Quem foi Júlio Benedicto Ottoni,,
+"""
+
+
+def test_a_house_with_its_papers_and_a_length_beside_the_depth(tmp_path: Path) -> None:
+    found, items = read(HOUSE, tmp_path)
+    assert items["500"].height_m == pytest.approx(1.82)
+    assert {number: classify(item).object_class for number, item in items.items()} == {
+        "500": "cabinet",
+        "499": "framed",
+        "498": "framed",
+        "494": "small_flat",
+        "489": "object",
+        "488": "statue",
+        "484": "small_flat",
+        "479": "small_flat",
+        "471": "small_flat",
+    }
+    assert [doubt for doubt in found.doubts if "no field takes the numbers of 'Comprimento (cm)'" in doubt]
+
+
+def test_sizes_behind_a_technique_are_read_and_said(tmp_path: Path) -> None:
+    found, items = read(
+        "id,artist,title,year,technique\n"
+        '1,Sandro Botticelli e bottega,Venere,1485-1490 ca,"Olio su tela, cm 174 x 77"\n'
+        "2,Tommaso Della Porta,Busto di Minerva con elmo figurato,Sec. II a.C.,Marmo pario; marmo pentelico\n"
+        "3,Giovanni Riccio,Giuseppina Bolognara,seconda metà XIX secolo,litografia\n",
+        tmp_path,
+    )
+    assert [item.height_m for item in items.values()] == [pytest.approx(1.74), None, None]
+    assert [classify(item).object_class for item in items.values()] == ["framed", "bust", "framed"]
+    assert [doubt for doubt in found.doubts if "no column is for sizes: those in 'technique' are read" in doubt]
+    film = "id,title,medium\n1,First,16mm film\n2,Second,35mm slide\n3,Third,oil on canvas\n"
+    assert not [doubt for doubt in read(film, tmp_path)[0].doubts if "are read, look at each" in doubt]
+
+
+def test_what_is_said_again_and_again_in_place_of_a_number_is_none(tmp_path: Path) -> None:
+    rows = "Sem registro,36,Bandeira do Brasil,98\nSem registro,38,Mastro,212\n0101,39,Bandeira do Império,90\n"
+    rows += "0102,40,Flâmula,40\n"
+    found, items = read("Número de registro,Document,Denominação,Altura (cm)\n" + rows, tmp_path)
+    assert list(items) == ["36", "38", "0101", "0102"]
+    assert [doubt for doubt in found.doubts if "Sem registro" in doubt]
 
 
 def test_sizes_in_sentences_are_read_and_said(tmp_path: Path) -> None:

@@ -83,6 +83,17 @@ class Column:
         return sum(named) / len(some) if some else 0.0
 
     @cached_property
+    def captioned(self) -> float:
+        """Share of its texts that tell two sides at least, or one by its name: "Olio su tela, cm 174 x 77"."""
+        some = self.filled[:_SOME]
+        sides = ([p for p in parse(plain_text(text)).parts if p.unit] for text in some)
+        return (
+            sum(len(of) > 1 or any(p.dimension in _NAMED and not p.assumed for p in of) for of in sides) / len(some)
+            if some
+            else 0.0
+        )
+
+    @cached_property
     def sized(self) -> float:
         """Share of its texts that hold a number and a word: a size, perhaps in words that are not understood."""
         some = self.filled[:_SOME]
@@ -315,6 +326,24 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
     best = max(texts, key=lambda c: c.dimensional, default=None)
     return [best] if best is not None and best.dimensional > 0.6 else []
+
+
+def captions_of_dimensions(columns: Sequence[Column]) -> Column | None:
+    """Return the column, a field already or none, that tells sizes behind what it is for, as captions do.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+
+    Returns
+    -------
+    Column or None
+        None where none tells the sizes of one object in ten.
+    """
+    able = [column for column in columns if not column.prose]
+    best = max(able, key=lambda column: column.captioned * len(column.filled), default=None)
+    return best if best is not None and best.captioned * len(best.filled) >= 0.1 * len(best.values) else None
 
 
 def prose_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:

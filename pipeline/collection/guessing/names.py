@@ -83,6 +83,12 @@ _ABOUT = frozenset(
 """Words before the name of a side that say only that it is one."""
 
 
+def is_length(name: str) -> bool:
+    """Whether a column is of lengths, which no field has: the depth takes them where no other column is for it."""
+    what = named(name)
+    return what is not None and what.field == LENGTH
+
+
 def is_side(name: str) -> bool:
     """Whether the name of a column begins as those of sizes do: "measurement_girth"."""
     return bool(_ABOUT.intersection(plain(name).split()[:1]))
