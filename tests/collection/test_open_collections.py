@@ -15,7 +15,7 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guess import Guess, guess
-from pipeline.collection.guessing.names import complements, named
+from pipeline.collection.guessing.names import complements, misspelt, named
 from pipeline.collection.reading import read_items
 from pipeline.records import Item
 
@@ -234,6 +234,8 @@ def test_sizes_in_sentences_are_read_and_said(tmp_path: Path) -> None:
 
 
 def test_names_of_columns_in_these_exports() -> None:
+    assert misspelt("classification_id") is None
+    assert misspelt("clasification") is not None
     for name in ("Número de registro", "Número de tombo", "numéro d'enregistrement", "numero di registro"):
         said = named(name)
         assert said is not None

@@ -83,6 +83,10 @@ _ABOUT = frozenset(
 """Words before the name of a side that say only that it is one."""
 
 
+_OF_KEYS = frozenset({"id", "ids", "key", "uri", "url"})
+"""Words that end the name of a column of keys or addresses."""
+
+
 def is_length(name: str) -> bool:
     """Whether a column is of lengths, which no field has: the depth takes them where no other column is for it."""
     what = named(name)
@@ -290,7 +294,9 @@ def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
     form = plain(unit_in(name)[0])
     if len(form) < _LONG:
         return None
-    known = [one for one in _names() if len(one) >= _LONG]
+    # A key is no misspelt word: "classification_id" is no classification.
+    last = form.split()[-1]
+    known = [one for one in _names() if len(one) >= _LONG and (last not in _OF_KEYS or one.split()[-1] == last)]
     # Two letters exchanged leave the same letters, and the first one: "heigth".
     near = [one for one in known if one[0] == form[0] and sorted(one) == sorted(form)]
     near += get_close_matches(form, known, n=1, cutoff=_ALMOST)
