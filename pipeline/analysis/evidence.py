@@ -24,7 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.analysis.rules import PICTURES, Readings, RuleMatch, fold, stuff, words_of
-from pipeline.analysis.shapes import SHAPES
+from pipeline.analysis.shapes import SHAPES, faceless
+from pipeline.collection.dimensions.lexicon import words_for
 from pipeline.records import Item
 from pipeline.tables import table
 from pipeline.tables.assumed_rows import WHEN_HELD
@@ -82,15 +83,16 @@ FLOOR = 0.02
 
 It is what the scatter between museums that were left out leaves over: see pipeline.verification.class_scores.
 """
-PICTURED_PARTS = re.compile(
-    r"\b(?:(?:un)?framed?|sheet|image|sight|canvas|stretcher|support\s*:|rahmen|blatt|leinwand|bildmaß|cadre|feuille|"
-    r"châssis|cornice|foglio|tela|marco|hoja|lienzo|moldura|folha|lijst|doekmaat|dagmaat|ram(?:me)?|blad(?:mål|maal)?)\b",
-    re.IGNORECASE,
-)
-"""What is measured of pictures alone: a frame, a sheet, an image, a canvas."""
 _READ = 400
 """Characters of a text that are searched."""
 _WORD = re.compile(r"[^\W\d_]+")
+
+
+@cache
+def _pictured_parts() -> re.Pattern[str]:
+    """Return what finds what is measured of pictures alone: a frame, a sheet, an image, a canvas."""
+    words = sorted(words_for("framed", "frame", "unframed", "sheet", "image", "sight"), key=len, reverse=True)
+    return re.compile(rf"\b(?:support\s*:|(?:{'|'.join(map(re.escape, words))})\b)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -277,9 +279,9 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
     if not chances:
         return None
     first = chances[0]
-    if is_alone(item) and not read.outright and SHAPES["panel"](item):
+    if is_alone(item) and not read.outright and SHAPES["panel"](item) and not faceless(item):
         flat = next(one for one in chances if one.object_class in PICTURES)
-        if PICTURED_PARTS.search(item.dimensions[:_READ]):
+        if _pictured_parts().search(item.dimensions[:_READ]):
             return flat
         faced = item.height_m and item.width_m and (item.depth_m or 0.0) <= FACE * min(item.height_m, item.width_m)
         if item.title and (faced or not read.silent):

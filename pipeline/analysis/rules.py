@@ -45,6 +45,12 @@ _OF_SET = re.compile(
     r"^[^:;,]*\b(?:set|service|servizio|servicio|servico|garniture|garnitur|garnitura)\s*:\s*(?=[^\W\d_])"
 )
 """What stands ahead of a part of a set: Child's tea service: plate."""
+_OF_MANY = re.compile(
+    r"^\s*(?:ensemble|conjunto|insieme|suite|lot|lote)\s+(?:de|di|do|da|dos|das|of)\s|^\s*ensemble\s+d['’]"
+)
+"""What says that there are several of the things named behind it: Ensemble de tables consoles."""
+_KIND = re.compile(r"\(\s*([^()]+?)\s*\)\s*$")
+"""What stands in brackets at the end and may say what the thing itself is: Brasão (desenho)."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
 """What a maker calls a thing, which is no model of it: Clock Model No. 101."""
 _SUPPORT = re.compile(
@@ -423,11 +429,13 @@ def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleM
 @lru_cache(maxsize=16384)
 def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     """Return the known words and *endings of an object name or title, the likeliest name of the thing first."""
-    folded = _OF_SET.sub("", _MARK.sub(" , ", fold(text)))
+    folded = _OF_MANY.sub("", _OF_SET.sub("", _MARK.sub(" , ", fold(text))))
     parts = _BREAK.split(folded)
     # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
     start = of.spanning.match(folded) if of.spanning is not None else None
-    out = [] if start is None else list(_spelt(of, start.group().split()))
+    kind = _KIND.search(folded)
+    out = [] if kind is None else [one for one in _spelt(of, kind.group(1).split()) if _pictures(of, one)]
+    out += [] if start is None else _spelt(of, start.group().split())
     out += _inverted(folded, of)
     only = _PART.search(folded)
     if only is not None:
@@ -439,6 +447,11 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
                 if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
                     out.append(word)
     return tuple(out)
+
+
+def _pictures(of: RuleTable, word: str) -> bool:
+    """Whether a word names what hangs flat, whatever it shows."""
+    return any(rule.object_class in PICTURES for rule in of.by_word.get(word, ()))
 
 
 def _inverted(folded: str, of: RuleTable) -> Iterator[str]:

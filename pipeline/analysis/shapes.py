@@ -40,11 +40,18 @@ def _sizes(item: Item) -> list[float]:
     return [size for size in (item.height_m, item.width_m, item.depth_m) if size is not None]
 
 
+def faceless(item: Item) -> bool:
+    """Say whether a length and a width are all that is told: of what is flat, the sides of its face."""
+    return item.height_m is None and bool(item.width_m and item.depth_m)
+
+
 def _flat(item: Item) -> bool:
-    return (item.depth_m or 0.0) <= FLAT * max(item.height_m or 0.0, item.width_m or 0.0)
+    return faceless(item) or (item.depth_m or 0.0) <= FLAT * max(item.height_m or 0.0, item.width_m or 0.0)
 
 
 def _panel(item: Item) -> bool:
+    if faceless(item):
+        return True
     depth = item.depth_m or 0.0
     return depth <= PANEL or depth <= FRAME * max(item.height_m or 0.0, item.width_m or 0.0)
 
@@ -64,7 +71,8 @@ def _tall(item: Item) -> bool:
 
 
 def _broad(item: Item) -> bool:
-    face = [size for size in (item.height_m, item.width_m) if size is not None]
+    other = item.depth_m if faceless(item) else item.height_m
+    face = [size for size in (other, item.width_m) if size is not None]
     return max(face, default=0.0) >= BROAD and min(face) >= BAND
 
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import exp, hypot, log
 
-from pipeline.records import Estimate, Item, Origin
+from pipeline.analysis.shapes import faceless
+from pipeline.records import Estimate, Item, Origin, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
 from pipeline.tables.proportion_rows import proportions
@@ -51,6 +52,28 @@ def ratio_of(row: ObjectClass, size: str, known: Mapping[str, float]) -> Estimat
     return None
 
 
+def face_of(item: Item) -> Estimate | None:
+    """Return the height of what hangs and has a length and a width alone, as rugs and scrolls do.
+
+    A text that gives a length and no height leaves open which side is up; the record holds the length as a depth.
+
+    Parameters
+    ----------
+    item : Item
+        Of what hangs flat.
+
+    Returns
+    -------
+    Estimate or None
+        [m]: its length, between the one side and the other; None where the record tells a height, or only one side.
+    """
+    if not faceless(item) or item.width_m is None or item.depth_m is None:
+        return None
+    low, high = sorted((item.width_m, item.depth_m))
+    note = f"{say.FACE(length=item.depth_m)}; {say.FACE_TURNED(other=low)}"
+    return Estimate.assumed(item.depth_m, low, high, "m", note, "judgement")
+
+
 def _plan_known(size: str, known: Mapping[str, float]) -> bool:
     # Of what is round one of them says both; where neither is known, its width is assumed.
     return size == "depth" or (size == "width" and "depth" in known)
@@ -77,10 +100,13 @@ class Sizes:
     @classmethod
     def of(cls, item: Item, row: ObjectClass) -> "Sizes":
         """Return the sizes of an object of a class."""
+        hung = face_of(item) if row.support == Support.HUNG else None
+        if hung is not None:
+            item = replace(item, depth_m=None)
         known = sizes_known(item)
         # What is round is as deep as it is wide, whether that is known or assumed.
         asked = [name for name in SIZES if known and name not in known and not (row.round and _plan_known(name, known))]
-        found = {name: ratio_of(row, name, known) for name in asked}
+        found = {name: ratio_of(row, name, known) if name != "height" or hung is None else hung for name in asked}
         return cls(item, {name: one for name, one in found.items() if one is not None}, row.round)
 
     @cached_property

@@ -12,10 +12,17 @@ from tomlkit.items import Table
 
 from pipeline.collection.display_words import flag_of, says_away
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.guessing.columns import Column, candidates, usual_place
+from pipeline.collection.guessing.columns import (
+    Column,
+    candidates,
+    captions_of_dimensions,
+    material_and_technique,
+    prose_of_dimensions,
+    usual_place,
+)
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
-from pipeline.collection.guessing.names import bare, is_side, misspelt, named, unit_in
+from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named, unit_in
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -130,8 +137,8 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         else:
             columns = columns_in(path, source)
     columns = objects_of(name, source, columns, told)
-    decimal = told.choices.get("decimal") or decimal_of(columns)
-    if decimal == "," and source.get("delimiter") != ",":
+    decimal = told.choices.get("decimal") or decimal_of(columns, parted=source.get("delimiter") == ",")
+    if decimal == ",":
         source["decimal"] = decimal
         told.sure.append("decimal comma, as most numbers have it")
     return _written(name, source, columns, told)
@@ -185,19 +192,36 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     usual = None if "gallery" in told.choices else usual_place(columns, found)
     if usual is not None:
         told.questions[:] = [question for question in told.questions if question.key != "gallery"]
-    fields, used = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery")).mapped(found)
+    both = () if "medium" in told.choices else material_and_technique(able.get("medium", ()))
+    if both:
+        told.questions[:] = [question for question in told.questions if question.key != "medium"]
+        told.sure.append(f"the medium is {' and '.join(repr(column.name) for column in both)} together")
+    second = None if "object_number" in told.choices else _second_number(columns, found)
+    writer = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both, second)
+    fields, used = writer.mapped(found)
     document["columns"] = fields
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")
     if wanted is not None:
         texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
+    if not texts and wanted is None and not {"height_m", "width_m", "depth_m", "diameter_m"} & set(fields):
+        apart = {id(found.get(field)) for field in ("object_number", "gallery", "on_display", "image")}
+        may = [column for column in columns if id(column) not in apart]
+        behind = captions_of_dimensions(may) or prose_of_dimensions(columns, used)
+        if behind is not None:
+            texts = [behind]
+            told.doubts.append(
+                f"no column is for sizes: those in {'the sentences of ' * behind.prose}{behind.name!r} are read, look "
+                "at each; --choose dimensions=- leaves them"
+            )
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
         units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
         if len(units) == 1:
             document["dimensions"]["unit"] = units.pop()
     taken = {id(column) for column in (*used, *texts)}
-    lost = [column for column in columns if id(column) not in taken and column.numeric and is_side(column.name)]
+    left = [column for column in columns if id(column) not in taken and column.numbers]
+    lost = [one for one in left if is_length(one.name) or (one.numeric and is_side(one.name))]
     if lost:
         told.doubts.append(
             f"no field takes the numbers of {', '.join(repr(column.name) for column in lost[:10])}; --choose "
@@ -269,9 +293,10 @@ def _chosen(
     _settle_number(able.get("object_number", ()), found, told)
     number = found.get("object_number")
     if number is None:
-        found["object_number"] = number = _unique(name, columns)
+        found["object_number"] = number = _unique(name, columns, found)
         told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
-        likely = tuple(c.name for c in columns if len(set(c.filled)) > 0.9 * len(c.values))
+        free = [column for column in columns if column is number or column not in found.values()]
+        likely = tuple(c.name for c in free if len(set(c.filled)) > 0.9 * len(c.values) and c.numbering)
         told.questions.append(Question("object_number", "which column has the object numbers?", likely, number.name))
     elif len(able.get("object_number", ())) > 1 and "object_number" not in told.choices:
         likely = tuple(column.name for column in able["object_number"])
@@ -281,7 +306,9 @@ def _chosen(
             f"object numbers are taken from {number.name!r}, and not from {others}; --choose object_number=COLUMN "
             "takes another"
         )
-    repeated = len(number.filled) - len(set(number.filled))
+    none = number.blanks if _second_number(columns, found) is not None else ()
+    numbers = [text for text in number.filled if text not in none]
+    repeated = len(numbers) - len(set(numbers))
     if repeated:
         told.doubts.append(
             f"column {number.name!r} repeats {repeated} object numbers: only the first row of each is kept"
@@ -318,10 +345,24 @@ def _column(name: str, columns: Sequence[Column], key: str, wanted: str) -> Colu
     raise CollectionError(f"{name}: --choose {key}: there is no column {wanted!r}; its columns are {there}")
 
 
-def _unique(name: str, columns: Sequence[Column]) -> Column:
-    for column in columns:
-        if column.filled and len(set(column.filled)) == len(column.values):
-            return column
+def _second_number(columns: Sequence[Column], found: Mapping[str, Column]) -> Column | None:
+    """Return a column of other numbers, where that of the objects' numbers says of several that they have none.
+
+    Whole numbers are rather those of a database than codes of another kind.
+    """
+    fields = {id(column) for column in found.values()}
+    able = [column for column in columns if id(column) not in fields and column.numbering]
+    alone = [column for column in able if len(column.distinct) == len(column.values)]
+    whole = [column for column in alone if all(map(str.isdecimal, column.filled))]
+    return next(iter(whole or alone), None) if found["object_number"].blanks else None
+
+
+def _unique(name: str, columns: Sequence[Column], found: Mapping[str, Column]) -> Column:
+    """Return the column that tells rows apart: what may be a number first, prose and what is another field last."""
+    able = [column for column in columns if column.filled and len(set(column.filled)) == len(column.values)]
+    if able:
+        fields = {id(column) for column in found.values()}
+        return min(able, key=lambda one: (id(one) in fields, not one.numbering, 0 if one.numbering else one.length))
     there = ", ".join(repr(column.name) for column in columns[:30])
     raise CollectionError(
         f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "

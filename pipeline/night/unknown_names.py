@@ -3,7 +3,8 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from pipeline.analysis.rules import readings
+from pipeline.analysis.object_class import class_of
+from pipeline.analysis.rules import PICTURES, readings
 from pipeline.records import Item
 
 SEEN = 2000
@@ -30,7 +31,8 @@ def unknown_names(items: Sequence[Item]) -> str:
         With the names that are most frequent, and what helps.
     """
     some = items[:: max(1, len(items) // SEEN)]
-    silent = [item for item in some if readings(item).silent]
+    # A title alone may name what a picture shows: what is taken for one is not held to stand.
+    silent = [item for item in some if readings(item).silent and class_of(item).name not in PICTURES]
     if len(some) < FEWEST or len(silent) <= MOST * len(some):
         return ""
     names = Counter(item.object_name or item.title for item in silent if item.object_name or item.title)

@@ -64,7 +64,6 @@ FAULTS = {
     "optional number": ('column = "number"', 'column = "number", optional = true', "leave out optional"),
     "unknown encoding": ('"utf-8"', '"utf-7"', "source.encoding"),
     "long delimiter": ('delimiter = ","', 'delimiter = "||"', "source.delimiter"),
-    "two meanings of a comma": ('delimiter = ","', 'delimiter = ","\ndecimal = ","', "delimiter and decimal mark"),
     "unknown support": (
         "title = { column",
         'support = { column = "how", values = { "text" = "freestandig" } }\ntitle = { column',

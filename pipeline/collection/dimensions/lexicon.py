@@ -134,6 +134,13 @@ def compounds() -> dict[str, tuple[str, ...]]:
 
 
 @cache
+def words_for(*wanted: str) -> frozenset[str]:
+    """Return the words for some meanings, those that join a part with the word for size among them."""
+    rows = checked(_Word, table("dimension_words"), "dimension_words.csv", named="words")
+    return frozenset(word for row in rows if row.meaning in wanted for word in row.words)
+
+
+@cache
 def label_words() -> frozenset[str]:
     """Return the labels of all languages in small letters."""
     return frozenset(label for one in languages().values() for label in one.folded)

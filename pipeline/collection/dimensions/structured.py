@@ -1,4 +1,4 @@
-"""Dimensions that a cell holds as JSON, as catalogues on the web publish them -> the same as a text."""
+"""Dimensions that a cell holds as JSON or as a form of labels, as catalogues on the web publish them -> a text."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ import json
 import re
 from ast import literal_eval
 from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import Any
+
+from pipeline.collection.dimensions.lexicon import unit_words
 
 LONGEST = 20_000
 """Characters of a cell that are looked at: thirty measurements with all that a catalogue says of each."""
@@ -15,6 +18,10 @@ DEEPEST = 6
 
 _OPENS = re.compile(r"\s*[\[{]\s*[\[{\"']")
 _LISTED = re.compile(r"\s*\[\s*[{\"'].*[}\"']\s*\]\s*\Z", re.DOTALL)
+_FORM = 2
+"""Labels with units from which a text is a form."""
+_FILLED = re.compile(r"([^\s(\[][^(\[]*)(.*)", re.DOTALL)
+"""What stands behind a label: the number, and what is said of it in brackets."""
 _WORDS = ("name", "title", "label", "term", "text", "content", "value", "_label", "description", "en")
 """Keys of what a thing is called, the likeliest first."""
 _MOST_WORDS = 2000
@@ -36,20 +43,45 @@ def plain_text(text: str) -> str:
     ----------
     text : str
         Of the cell: `[{"dimension": "Height", "value": "24.5", "unit": "cm", "part": ""}]`, the same as Python writes
-        it, `{"height": 450, "width": 320, "unit": "mm"}`, `{"framed": {"height": 0.6, "width": 0.5}}`, or any text.
+        it, `{"height": 450, "width": 320, "unit": "mm"}`, `{"framed": {"height": 0.6, "width": 0.5}}`, a form such as
+        `Altura (cm): 24,5 Largura (cm): Peso (g): 30`, or any text.
 
     Returns
     -------
     str
         "Height 24.5 cm, Width 12 cm"; those of a part behind its name. The text itself where it is no such cell.
     """
-    if len(text) > LONGEST or not _OPENS.match(text):
+    if len(text) > LONGEST:
         return text
+    if not _OPENS.match(text):
+        return _filled_in(text)
     found = _parsed(text.strip())
     parts: dict[str, list[str]] = {}
     for part, said in () if found is None else _lines(found, "", 0):
         parts.setdefault(part, []).append(said)
     return "; ".join(f"{part}: {', '.join(said)}" if part else ", ".join(said) for part, said in parts.items()) or text
+
+
+@cache
+def _label() -> re.Pattern[str]:
+    """Return what finds a label with its unit: "Altura (cm):"."""
+    units = "|".join(re.escape(word) for word in sorted(unit_words(), key=len, reverse=True) if word.isalpha())
+    return re.compile(rf"([^\W\d_][^\d:;,|()\n]*?)\s*[(\[]\s*({units})\.?\s*[)\]]\s*:", re.IGNORECASE)
+
+
+def _filled_in(text: str) -> str:
+    """Return what is filled in of a form whose labels each name their unit; the text itself where it is none."""
+    labels = list(_label().finditer(text))
+    if len(labels) < _FORM or text[: labels[0].start()].strip():
+        return text
+    ends = [*(label.start() for label in labels[1:]), len(text)]
+    said = []
+    for label, end in zip(labels, ends, strict=True):
+        value = _FILLED.fullmatch(text[label.end() : end].strip(" \t\r\n;,|/"))
+        if value is None:
+            continue
+        said.append(f"{label[1]} {value[1].strip()} {label[2]} {value[2]}".strip())
+    return ", ".join(said) or text
 
 
 def words_of(text: str) -> str:

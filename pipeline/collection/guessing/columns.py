@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from statistics import median
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
-from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, named
+from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, complements, named, tells_material
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
@@ -19,8 +21,13 @@ NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
 _SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d", re.DOTALL)
+_NAMED = ("height", "width", "depth", "diameter", "length")
+
 FEWEST = 10
 """Cells that must hold the same before a column is taken to tell nothing."""
+
+_LONGEST = 40
+"""Characters up to which a text is rather the number of an object than a sentence (judgement)."""
 
 _SOME = 200
 """Cells from which it is told what a column holds."""
@@ -69,6 +76,24 @@ class Column:
         return sum(any(p.unit for p in parse(plain_text(text)).parts) for text in some) / len(some) if some else 0.0
 
     @cached_property
+    def told(self) -> float:
+        """Share of its texts that say of a size which it is, somewhere in their sentences: 12 cm high."""
+        some = self.filled[:_SOME]
+        named = (any(p.unit and p.dimension in _NAMED and not p.assumed for p in parse(text).parts) for text in some)
+        return sum(named) / len(some) if some else 0.0
+
+    @cached_property
+    def captioned(self) -> float:
+        """Share of its texts that tell two sides at least, or one by its name: "Olio su tela, cm 174 x 77"."""
+        some = self.filled[:_SOME]
+        sides = ([p for p in parse(plain_text(text)).parts if p.unit] for text in some)
+        return (
+            sum(len(of) > 1 or any(p.dimension in _NAMED and not p.assumed for p in of) for of in sides) / len(some)
+            if some
+            else 0.0
+        )
+
+    @cached_property
     def sized(self) -> float:
         """Share of its texts that hold a number and a word: a size, perhaps in words that are not understood."""
         some = self.filled[:_SOME]
@@ -89,6 +114,30 @@ class Column:
     def units(self) -> float:
         """Share of its texts that name a unit."""
         return _share(self.filled, unit_of)
+
+    @cached_property
+    def numbering(self) -> bool:
+        """Whether most of its texts may be numbers of objects: short, with a digit, neither sizes nor addresses."""
+        some = self.filled[:_SOME]
+        short = sum(len(text) <= _LONGEST and any(map(str.isdigit, text)) and "://" not in text for text in some)
+        return bool(some) and short >= 0.9 * len(some) and self.dimensional < 0.5
+
+    @cached_property
+    def blanks(self) -> tuple[str, ...]:
+        """What it says again and again in place of a number: "Sem registro", "s/n"."""
+        often = Counter(text for text in self.filled if not any(map(str.isdigit, text)))
+        return tuple(text for text, times in often.items() if times > 1)
+
+    @cached_property
+    def length(self) -> float:
+        """Characters of its texts in the middle."""
+        return median(map(len, self.filled)) if self.filled else 0.0
+
+    @property
+    def prose(self) -> bool:
+        """Whether it holds sentences, and its name does not say that they are of sizes."""
+        what = named(self.name)
+        return self.length > _LONGEST and (what is None or what.field != TEXTS)
 
     @property
     def says_one(self) -> bool:
@@ -205,6 +254,23 @@ def usual_place(columns: Sequence[Column], found: dict[str, Column]) -> Column |
     return usual
 
 
+def material_and_technique(able: Sequence[Column]) -> tuple[Column, ...]:
+    """Return the likeliest column of a medium and the one that completes it, that of materials first.
+
+    Parameters
+    ----------
+    able : sequence of Column
+        That may be the medium, the likeliest first.
+
+    Returns
+    -------
+    tuple of Column
+        Empty where one column tells both, or no other one tells what is missing.
+    """
+    other = next((one for one in able[1:] if complements(able[0].name, one.name) and one.filled), None)
+    return () if other is None else tuple(sorted((able[0], other), key=lambda one: not tells_material(one.name)))
+
+
 def internal(column: Column) -> bool:
     """Whether a column's name is that of a number that only a database knows."""
     what = named(column.name)
@@ -260,3 +326,42 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
     best = max(texts, key=lambda c: c.dimensional, default=None)
     return [best] if best is not None and best.dimensional > 0.6 else []
+
+
+def captions_of_dimensions(columns: Sequence[Column]) -> Column | None:
+    """Return the column, a field already or none, that tells sizes behind what it is for, as captions do.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+
+    Returns
+    -------
+    Column or None
+        None where none tells the sizes of one object in ten.
+    """
+    able = [column for column in columns if not column.prose]
+    best = max(able, key=lambda column: column.captioned * len(column.filled), default=None)
+    return best if best is not None and best.captioned * len(best.filled) >= 0.1 * len(best.values) else None
+
+
+def prose_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
+    """Return the column of a file without any for sizes whose sentences tell the most of them.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    used : iterable of Column
+        Those that are fields already.
+
+    Returns
+    -------
+    Column or None
+        None where none tells the sizes of one object in ten.
+    """
+    taken = {id(column) for column in used}
+    able = [column for column in columns if id(column) not in taken and column.prose]
+    best = max(able, key=lambda column: column.told * len(column.filled), default=None)
+    return best if best is not None and best.told * len(best.filled) >= 0.1 * len(best.values) else None

@@ -25,6 +25,9 @@ USUAL_MM = 150
 """Median of whole numbers from which lengths are taken to be in millimetres: half of all objects are no metre and a
 half."""
 
+USUAL_M = 1.5
+"""Median of lengths up to which they may be in metres."""
+
 MOST_WORDS = 30
 """Different texts that a column of flags has at most."""
 
@@ -38,7 +41,9 @@ _NAMING = 0.5
 """Share of a column's texts that name a unit from which each is read with its own."""
 
 _TENTHS = re.compile(r"\d*[.,][1-46-9]")
+_HUNDREDTHS = re.compile(r"\d[.,]\d{2,3}")
 _SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _COMMA = re.compile(r"(?<![\d,.])\d+,\d{1,2}(?![\d,.])", re.ASCII)
 _POINT = re.compile(r"(?<![\d,.])\d+\.\d{1,2}(?![\d,.])", re.ASCII)
 
@@ -65,8 +70,11 @@ class Question:
     taken: str
 
 
-def decimal_of(columns: Sequence[Column]) -> str:
-    """Return the decimal mark that most numbers have, of cells and of dimension texts."""
+def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:
+    """Return the decimal mark that most numbers have, of cells and of dimension texts.
+
+    parted : cells are parted by commas; there a number of thousands may have been put into quotes as well ("1,250")
+    """
     commas = points = 0
     for column in columns:
         what = named(column.name)
@@ -76,7 +84,7 @@ def decimal_of(columns: Sequence[Column]) -> str:
         for number in column.values:
             # What the source itself holds as a number says nothing of how people write one.
             if not isinstance(number, TypedNumber) and NUMBER.fullmatch(number.strip()):
-                commas += "," in number
+                commas += "," in number and not (parted and _THOUSANDS.fullmatch(number.strip()))
                 points += "." in number
         if not column.numeric and column.dimensional > 0.2:
             for text in column.filled:
@@ -164,6 +172,10 @@ class Fields:
         Of the usual places of objects, which counts where that of the places now is empty.
     place : Column or None
         Of the places now.
+    medium : tuple of Column
+        Of materials and of techniques, where a file tells each in a column of its own.
+    second : Column or None
+        Of other numbers, for objects of which that of the objects' numbers says only that they have none.
     """
 
     columns: Sequence[Column]
@@ -172,6 +184,8 @@ class Fields:
     questions: list[Question]
     usual: Column | None = None
     place: Column | None = None
+    medium: tuple[Column, ...] = ()
+    second: Column | None = None
 
     def mapped(self, found: Mapping[str, Column]) -> tuple[tomlkit.items.Table, list[Column]]:
         """Return the section, and the columns that it reads.
@@ -209,6 +223,13 @@ class Fields:
             if name == "gallery" and self.usual is not None:
                 entry = self._or_usual(column, self.usual)
                 used.append(self.usual)
+            if name == "object_number" and self.second is not None:
+                entry = self._or_second(column, self.second)
+                used.append(self.second)
+            if name == "medium" and self.medium:
+                entry = tomlkit.table()
+                entry["columns"], entry["separator"] = [one.name for one in self.medium], ", "
+                used += (one for one in self.medium if one is not column)
             if entry is not None:
                 out[name] = entry
                 used.append(column)
@@ -218,6 +239,15 @@ class Fields:
         entry = tomlkit.table()
         entry["columns"], entry["first"] = [column.name, usual.name], True
         self.doubts.append(f"an object's place is {column.name!r}, and where that is empty {usual.name!r}")
+        return entry
+
+    def _or_second(self, column: Column, second: Column) -> tomlkit.items.Table:
+        entry = tomlkit.table()
+        entry["columns"], entry["first"], entry["missing"] = [column.name, second.name], True, list(column.blanks)
+        self.doubts.append(
+            f"column {column.name!r} says {', '.join(map(repr, column.blanks[:4]))} of several objects, which is no "
+            f"number: these have that of {second.name!r}; --choose object_number={column.name} leaves that out"
+        )
         return entry
 
     def _entry(self, name: str, column: Column) -> tomlkit.items.Table | None:
@@ -386,16 +416,29 @@ class Fields:
             unit, why = "in", "inches are taken, for they have eighths and sixteenths"
         elif whole > 0.98 * len(numbers) and median(float(n.replace(",", ".")) for n in numbers) >= USUAL_MM:
             unit, why = "mm", "millimetres are taken, for they are large and whole"
+        elif _in_metres(numbers):
+            unit, why = "m", "metres are taken, for most are small and go to the centimetre"
         names = ", ".join(repr(column.name) for column in untold.values())
         self.doubts.append(f"no unit is told for {names}: {why}; --choose unit=mm (cm, in, ...) takes another")
         self.questions.append(Question("unit", f"in which unit are {names}?", tuple(units_of("height_m")), unit))
         return unit
 
 
+def _in_metres(numbers: Sequence[str]) -> bool:
+    """Whether lengths are rather metres: in centimetres hardly anybody writes hundredths, 0.83, of what is small."""
+    fine = sum(bool(_HUNDREDTHS.fullmatch(number)) for number in numbers)
+    small = median(float(number.replace(",", ".")) for number in numbers) < USUAL_M if numbers else False
+    return len(numbers) >= FEWEST and fine >= 0.6 * len(numbers) and small
+
+
 def _unit_column(column: Column, columns: Sequence[Column], units: Mapping[str, float]) -> Column | None:
-    """Return the column that tells the units of another: the next one to its right of which that holds."""
-    after = list(columns)[[c is column for c in columns].index(True) + 1 :]
-    for other in after:
-        if other.units >= 0.9 and {unit_of(text) for text in other.distinct} <= set(units) | {None}:
-            return other
-    return None
+    """Return the column that tells the units of another: the next one to its right of which that holds, else the only
+    one that there is."""
+    at = [c is column for c in columns].index(True)
+    able = [
+        (where, other)
+        for where, other in enumerate(columns)
+        if other.units >= 0.9 and {unit_of(text) for text in other.distinct} <= set(units) | {None}
+    ]
+    after = [other for where, other in able if where > at]
+    return after[0] if after else able[0][1] if len(able) == 1 else None

@@ -58,6 +58,13 @@ _ALMOST = 0.9
 _WEAK = 1000
 """Rank of a name that is only part of what stands in the head."""
 
+_DISPLAYED = "display "
+"""Before a name: that its text is the one to be shown, as in "DISPLAY_DENOMINATION"."""
+
+_STUFF = re.compile(r"mat(?:eri|ier)|werkstoff|malzeme|tworzyw|υλικ|материал|材質|素材|재질")
+_CRAFT = re.compile(r"te(?:ch|k|c|h|hn)ni|τεχνικ|техник|tekniik|技法|기법")
+"""Parts of the names of columns that tell what a thing is made of, and how; folded."""
+
 _FORMER = frozenset(
     {
         *("former", "previous", "old", "other", "alt", "alte", "altes", "fruhere", "fruherer", "ancien", "ancienne"),
@@ -74,6 +81,16 @@ _ABOUT = frozenset(
     {"measurement", "measurements", "measure", "dimension", "dimensions", "size", "sizes", "maß", "misura"}
 )
 """Words before the name of a side that say only that it is one."""
+
+
+_OF_KEYS = frozenset({"id", "ids", "key", "uri", "url"})
+"""Words that end the name of a column of keys or addresses."""
+
+
+def is_length(name: str) -> bool:
+    """Whether a column is of lengths, which no field has: the depth takes them where no other column is for it."""
+    what = named(name)
+    return what is not None and what.field == LENGTH
 
 
 def is_side(name: str) -> bool:
@@ -240,17 +257,30 @@ def named(name: str) -> ColumnMeaning | None:
         return ColumnMeaning(name, 0)
     if any(_ELSEWHERE.intersection(plain(above).split()) for above in path_of(name)[:-1]):
         return None
-    for form in _forms(name):
+    forms = [*_forms(name)]
+    forms += [form.removeprefix(_DISPLAYED) for form in forms if form.startswith(_DISPLAYED)]
+    for form in forms:
         found = _names().get(form)
         if found is not None:
             return found
-    for form in _forms(name):
+    for form in forms:
         found = _singular_names().get(_singular(form))
         if found is not None:
             return found
     if plain(name) in CALLED:
         return ColumnMeaning("title", _WEAK)
     return _within(name)
+
+
+def tells_material(name: str) -> bool:
+    """Whether a column is named for materials, and perhaps for techniques too."""
+    return bool(_STUFF.search(plain(name)))
+
+
+def complements(name: str, other: str) -> bool:
+    """Whether of two columns one is named for materials alone, and the other for techniques alone."""
+    said = [(tells_material(one), bool(_CRAFT.search(plain(one)))) for one in (name, other)]
+    return sorted(said) == [(False, True), (True, False)]
 
 
 def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
@@ -269,7 +299,9 @@ def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
     form = plain(unit_in(name)[0])
     if len(form) < _LONG:
         return None
-    known = [one for one in _names() if len(one) >= _LONG]
+    # A key is no misspelt word: "classification_id" is no classification.
+    last = form.split()[-1]
+    known = [one for one in _names() if len(one) >= _LONG and (last not in _OF_KEYS or one.split()[-1] == last)]
     # Two letters exchanged leave the same letters, and the first one: "heigth".
     near = [one for one in known if one[0] == form[0] and sorted(one) == sorted(form)]
     near += get_close_matches(form, known, n=1, cutoff=_ALMOST)

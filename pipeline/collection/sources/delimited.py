@@ -9,15 +9,14 @@ from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BufferedReader, TextIOBase, TextIOWrapper
-from typing import ClassVar, Literal, Self
+from typing import ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Request, SourceSettings
 from pipeline.collection.sources.heads import joined_heads
 from pipeline.collection.sources.rows import Row
-from pipeline.errors import InputError
 
 # In all but UTF-16 (Excel's "Unicode text") the line ends survive a broken byte, so that it spoils one row only.
 Encoding = Literal[
@@ -293,12 +292,6 @@ class CsvSettings(HeadedSettings):
     delimiter: str = Field(
         pattern=r'^[^"\r\n\x00]$', description="The one character between two cells: a comma, a semicolon or a tab."
     )
-
-    @model_validator(mode="after")
-    def _one_comma(self) -> Self:
-        if self.delimiter == self.decimal == ",":
-            raise InputError('a comma cannot be both delimiter and decimal mark; most such files have delimiter = ";"')
-        return self
 
 
 class TsvSettings(HeadedSettings):
