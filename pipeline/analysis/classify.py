@@ -24,14 +24,17 @@ from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
 from pipeline.analysis.usual import clearance_of, friction_of, own_damping, wall_damping_of
 from pipeline.models import MODELS, model_named
+from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
-from pipeline.records import Estimate, Furniture, Item, Origin, Scene, Support, too_thin
+from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin, Scene, Support, too_thin
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
 
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
+
+_TO_STAND_ON = (Furniture.FLOOR, Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
 
 
 def material_of(item: Item, values: AssumedValues | None = None) -> Material:
@@ -318,7 +321,7 @@ def _known_of(
     row = values.classes[taken.name]
     if house is None:
         return taken, row, NO_EFFECT, values
-    said = house.effect(item, row.name, item.support or row.support, mounts=WHEN_HELD in row.models)
+    said = house.effect(item, row.name, as_told(item, row).support or row.support, mounts=WHEN_HELD in row.models)
     return taken, row, said, values
 
 
@@ -362,12 +365,13 @@ def furniture_kind(
 ) -> Furniture:
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
     _, row, said, _ = _known_of(item, rules, decided, house)
-    support = said.laid_over(item).support or row.support
+    support = as_told(said.laid_over(item), row).support or row.support
     return furniture_of(item, row.name, support, said).furniture
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
-    stands = house.laid_over(item)
+    laid = house.laid_over(item)
+    stands = as_told(laid, row)
     support = stands.support or row.support
     mount = mount_of(stands, row, house)
     models = _tried(stands, row, None if mount is None else mount.row.models)
@@ -378,6 +382,9 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     builder.build()
     if mount is None:
         builder.missing.extend(_unheld(stands, support))
+    if support is Support.ISOLATED and item.isolator != FRICTION_ISOLATOR.name:
+        # Its record has no numbers of springs: as if it stood on the floor it would be told to be off display.
+        builder.missing.append(UNTOLD_ISOLATOR)
     missing = tuple(builder.missing) if _needs_size(models) else ()
     known = builder.found
     for estimates in _estimates_of(models):
@@ -385,7 +392,9 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     hanging = None if builder.hanging is None else builder.hanging.known
-    if mount is not None and mount.note:
+    if stands.support is not laid.support:
+        assumptions.insert(0, f"support: {support.value}, as its record says on what it stands")
+    elif mount is not None and mount.note:
         assumptions.insert(0, mount.note)
     elif stands.support is None:
         assumptions.insert(0, f"support: {support.value}, assumed for: {row.told}; not recorded")
@@ -394,11 +403,39 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
 
 
+def as_told(item: Item, row: ObjectClass) -> Item:
+    """Return a record with the support that the rest of it tells, where it does not name one.
+
+    What has a footing that was measured stands on it, whatever things of its class usually do, and so does what usually
+    hangs where its record names furniture to stand on.  What has an isolator stands on that.
+
+    Parameters
+    ----------
+    item : Item
+        The record, with what house rules say of its support.
+    row : ObjectClass
+        Its class.
+    """
+    if item.support is not None or item.hanging is not None:
+        return item
+    if item.isolator.strip():
+        return replace(item, support=Support.ISOLATED)
+    footing = item.base_width_m or item.base_depth_m or item.contact_polygon or item.tilt_angle_deg is not None
+    hangs = row.support in (Support.HUNG, Support.SUSPENDED)
+    stands = footing or (hangs and item.furniture in _TO_STAND_ON)
+    usual = row.support is Support.FREESTANDING and WHEN_HELD not in row.models
+    if not stands or (usual and not _too_slender(item)):
+        return item
+    return replace(item, support=Support.FREESTANDING)
+
+
 def _tried(item: Item, row: ObjectClass, as_mounted: tuple[str, ...] | None = None) -> tuple[str, ...]:
     """Return the models that are tried on an object of a class: those of its class, or of how it is held, and more."""
     models = () if set(row.models) & {NO_MODEL, WHEN_HELD} else row.models
     if as_mounted is not None:
         models = as_mounted
+    elif item.support is Support.ISOLATED and item.isolator != FRICTION_ISOLATOR.name:
+        models = models or models_of(Support.FREESTANDING)
     elif item.support is not None and (item.support is not row.support or not (models or row.models == (NO_MODEL,))):
         models = models_of(item.support)
     for name, joins in _joining():
@@ -427,13 +464,17 @@ def unclassified(item: Item) -> Scene:
 
 def _unheld(item: Item, support: Support) -> list[str]:
     """Say that the support is missing where a thing is too thin to stand and nothing tells how it is held."""
+    if item.support is not None or support is not Support.FREESTANDING:
+        return []
+    times = _too_slender(item)
+    return [too_thin(times)] if times else []
+
+
+def _too_slender(item: Item) -> float:
+    """Return how many times as high as deep a thing is that by that cannot stand by itself; else 0."""
     plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d]
-    if item.support is not None or support is not Support.FREESTANDING or not plan or item.height_m is None:
-        return []
-    times = item.height_m / min(plan)
-    if times <= SLENDEREST:
-        return []
-    return [too_thin(times)]
+    times = item.height_m / min(plan) if plan and item.height_m is not None else 0.0
+    return times if times > SLENDEREST else 0.0
 
 
 @cache

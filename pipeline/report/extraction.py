@@ -19,7 +19,7 @@ from pipeline.mitigate.rows import STORED
 from pipeline.mitigate.search import ANCHORED, AT_BEST, ONLY_HERE, SIZED
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
-from pipeline.records import Anchorage, Item, Support
+from pipeline.records import UNTOLD_ISOLATOR, Anchorage, Item, Support
 from pipeline.report.text import bare
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed
@@ -90,7 +90,7 @@ def _names() -> Iterator[str]:
     names += [STORED, *object_classes(), *Support, *Anchorage]
     yield from (bare(name) for name in names)
     yield from ("width (or diameter)", "height or suspension length", "height of the centre of gravity")
-    yield "width of its weakest section"
+    yield from ("width of its weakest section", UNTOLD_ISOLATOR)
     yield from map(bare, (FREQUENCY, DAMPING, LEVEL_ERROR))
     yield from (f"no generic model applies: it {row['why']}" for row in table("classes") if row["models"] == "none")
     # Whoever chooses one of them at the desk reads its title.
