@@ -119,7 +119,7 @@ class _Builder:
             self._pendulum()
         elif self.item.height_m is None and "hook_depth" not in self.found and self.hanging.known not in LOCKED:
             self.missing.append("height")
-        self._weigh("height", "width")
+        self._weigh("height", "width", *(() if self.row.filled is None else ("depth",)))
 
     def _pendulum(self) -> None:
         item = self.item

@@ -8,12 +8,13 @@ from math import pi
 
 from pipeline.records import Estimate, Item, Origin
 from pipeline.tables import Range
+from pipeline.tables.assumed import UNKNOWN
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.fill_rows import fills
 
 
 def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Estimate | None:
-    """Return the mass of an object [kg]: as recorded, else by its area where it hangs, else by what fills its outline.
+    """Return the mass of an object [kg]: as recorded, else by what fills its outline, else by its area where it hangs.
 
     Parameters
     ----------
@@ -33,12 +34,14 @@ def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Est
     """
     if item.mass_kg is not None:
         return Estimate.measured(item.mass_kg, "kg")
-    if hung and item.height_m and item.width_m:
+    box, own = _outline(item, row), _metal_fill(row, material)
+    fill = own or row.filled
+    # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
+    by_volume = fill is not None and item.depth_m is not None and material.name != UNKNOWN
+    if hung and item.height_m and item.width_m and not by_volume:
         area = item.height_m * item.width_m
         note = "mass: 15 kg (5 to 40 kg) for each square metre of a framed work, assumed"
         return Estimate.assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
-    box, own = _outline(item, row), _metal_fill(row, material)
-    fill = own or row.filled
     if fill is None or box is None:
         return None
     density = material.density_range

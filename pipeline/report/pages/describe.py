@@ -313,7 +313,7 @@ class Sayings:
         return NumberView(text, self.origin(e.origin), note, clean(e.source))
 
     def assumed(self, text: str) -> str:
-        """Say what was assumed, in the language and the lengths of the reader."""
+        """Say what was assumed, or why a measure was rejected, in the language and the lengths of the reader."""
         return self._assumed.had(text, lambda: self._units.restated(said(clean(text))))
 
 
@@ -423,7 +423,7 @@ class Describer:
             sentence=clean(self._units.fill(said(r.sentence), values, where, by_hand(self._units))) + left_over(r),
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
-            rejected=tuple(clean(text) for text in r.rejected),
+            rejected=tuple(self._sayings.assumed(text) for text in r.rejected),
             source=clean(r.source),
         )
 
