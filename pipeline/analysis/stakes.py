@@ -193,7 +193,13 @@ def expected_loss(assessment: Assessment) -> float:
 
 def to_check(assessment: Assessment) -> bool:
     """Say whether the record of an object is to be checked before anything is done about it."""
-    return assessment.likelihood is not None and doubtful(assessment.scene) > 0.0
+    scene = assessment.scene
+    return assessment.likelihood is not None and (doubtful(scene) > 0.0 or ill_weighed(scene))
+
+
+def ill_weighed(scene: Scene) -> bool:
+    """Say whether the recorded mass and sizes cannot both be true: whatever is built for them would not fit the object."""
+    return scene.item.mass_kg is not None and any(problem.field == "mass_kg" for problem in scene.item.problems)
 
 
 def doubtful(scene: Scene) -> float:

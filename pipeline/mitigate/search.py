@@ -405,7 +405,7 @@ class _Search:
             # The force on pieces is told by the best estimate of its mass, their number by the worst.
             if "force" in numbers and "pieces" not in numbers and mass is not None and _unweighed(mass):
                 numbers |= {"heaviest": (mass.high, "kg"), "weight": (mass.value, "kg")}
-                more += f" {HEAVIEST}"
+                more = f" {HEAVIEST}{more}"
             self.helped.add(one.index)
             if measure.fastens:
                 self.fastened.add(one.index)

@@ -1,15 +1,28 @@
 """What the rest of a record tells of how a thing is held goes before what its class usually does."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from pipeline.analysis.classify import classify, object_classes
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.house.rule import HouseRule
-from pipeline.analysis.stakes import doubtful
+from pipeline.analysis.stakes import doubtful, ill_weighed, to_check
+from pipeline.collection.mapping import load_mapping
+from pipeline.collection.reading import read_items
 from pipeline.mitigate.installed import InstalledMeasure, placed
-from pipeline.records import UNTOLD_ISOLATOR, Furniture, Hanging, Item, Mount, Support
+from pipeline.records import (
+    UNTOLD_ISOLATOR,
+    Assessment,
+    Band,
+    Furniture,
+    Hanging,
+    Item,
+    Likelihood,
+    Mount,
+    Support,
+)
 
 STELE = Item("1", "East", object_name="stele", medium="marble", height_m=1.8, width_m=0.6, depth_m=0.15)
 HARP = Item("2", "East", object_name="harp", medium="maple", height_m=1.75, width_m=0.9, depth_m=0.4)
@@ -90,3 +103,18 @@ def test_the_record_of_what_lies_or_is_held_is_not_doubted_for_its_slenderness(i
 
 def test_the_record_of_what_would_have_to_stand_on_its_edge_is() -> None:
     assert doubtful(classify(Item("8", "East", object_name="vase", height_m=0.4, width_m=0.3, depth_m=0.05))) == 8.0
+
+
+def test_a_weight_that_does_not_go_with_the_size_is_to_be_checked_before_anything_is_built(tmp_path: Path) -> None:
+    """A cube of bronze of a metre weighs 8.7 t; of 0.5 kg somebody mistook a unit.  A hollow cast of 300 kg is none."""
+    path = tmp_path / "export.csv"
+    path.write_text(
+        "object_number,gallery,object_name,medium,height_m,width_m,depth_m,mass_kg\n"
+        "1,G,sculpture,bronze,1,1,1,0.5\n2,G,sculpture,bronze,1,1,1,300\n"
+    )
+    wrong, right = read_items(path, load_mapping("kouros")).items
+    assert ill_weighed(classify(wrong))
+    assert not ill_weighed(classify(right))
+    possible = Likelihood("design", 0.2, 0.01, 64, Band.POSSIBLE, "falls", {"falls": 0.2})
+    assert to_check(Assessment(classify(wrong), (), (), likelihoods=(possible,)))
+    assert not to_check(Assessment(classify(right), (), (), likelihoods=(possible,)))

@@ -154,7 +154,7 @@ def test_another_surface_is_the_right_answer(motion: Motion) -> None:
 
 
 def test_nothing_in_a_case_is_set_on_plywood(motion: Motion) -> None:
-    """Of metal, plywood (0.37) is all that Table 3 has above terrazzo: on a floor it is the answer, in a case it fumes."""
+    """Of metal, plywood (0.37) is all that Table 3 has above terrazzo: it is the answer, but not in a case."""
     x, y, z = 3.5 * motion.acceleration
     strong = motion.changed([x, y, 0.0 * z], "until room alone is not enough, and nothing is lifted")
     metal = replace(BLOCK, base_material="Aluminum", friction=0.24, clearance_m=0.2, base_width_m=2.0, base_depth_m=2.0)

@@ -48,7 +48,7 @@ class Restrain(Measure):
 
 
 class Stays(Restrain):
-    """Stay what hangs from above to all sides: it moves with the building, and each stay may have to bear the push alone.
+    """Stay what hangs from above to all sides: it moves with the building, and each stay may have to bear the push.
 
     References
     ----------
