@@ -198,7 +198,7 @@ def to_check(assessment: Assessment) -> bool:
 
 
 def ill_weighed(scene: Scene) -> bool:
-    """Say whether the recorded mass and sizes cannot both be true: whatever is built for them would not fit the object."""
+    """Say whether the recorded mass and sizes cannot both be true: what is built for them would not fit the object."""
     return scene.item.mass_kg is not None and any(problem.field == "mass_kg" for problem in scene.item.problems)
 
 

@@ -118,3 +118,10 @@ def test_a_weight_that_does_not_go_with_the_size_is_to_be_checked_before_anythin
     possible = Likelihood("design", 0.2, 0.01, 64, Band.POSSIBLE, "falls", {"falls": 0.2})
     assert to_check(Assessment(classify(wrong), (), (), likelihoods=(possible,)))
     assert not to_check(Assessment(classify(right), (), (), likelihoods=(possible,)))
+
+
+def test_a_slab_that_is_made_fast_is_judged_as_thick_as_it_is() -> None:
+    """Its section is a square of its depth (classes.csv), of modulus d^3 / 6; the slab itself has four times that."""
+    strapped = classify(replace(STELE, support=Support.FASTENED, base_width_m=0.6, base_depth_m=0.15, mass_kg=437.0))
+    assert strapped.missing == ()
+    assert strapped.parameters["section_modulus"].value == pytest.approx(0.15**3 / 6.0)
