@@ -22,6 +22,7 @@ from pipeline.analysis.object_class import TakenClass, class_of
 from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
+from pipeline.analysis.told import as_told, too_slender
 from pipeline.analysis.usual import clearance_of, friction_of, own_damping, wall_damping_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.friction_isolator import FRICTION_ISOLATOR
@@ -30,11 +31,6 @@ from pipeline.models.unhooking import LOCKED
 from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin, Scene, Support, too_thin
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
-
-SLENDEREST = 9.0
-"""Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
-
-_TO_STAND_ON = (Furniture.FLOOR, Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
 
 
 def material_of(item: Item, values: AssumedValues | None = None) -> Material:
@@ -403,32 +399,6 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
 
 
-def as_told(item: Item, row: ObjectClass) -> Item:
-    """Return a record with the support that the rest of it tells, where it does not name one.
-
-    What has a footing that was measured stands on it, whatever things of its class usually do, and so does what usually
-    hangs where its record names furniture to stand on.  What has an isolator stands on that.
-
-    Parameters
-    ----------
-    item : Item
-        The record, with what house rules say of its support.
-    row : ObjectClass
-        Its class.
-    """
-    if item.support is not None or item.hanging is not None:
-        return item
-    if item.isolator.strip():
-        return replace(item, support=Support.ISOLATED)
-    footing = item.base_width_m or item.base_depth_m or item.contact_polygon or item.tilt_angle_deg is not None
-    hangs = row.support in (Support.HUNG, Support.SUSPENDED)
-    stands = footing or (hangs and item.furniture in _TO_STAND_ON)
-    usual = row.support is Support.FREESTANDING and WHEN_HELD not in row.models
-    if not stands or (usual and not _too_slender(item)):
-        return item
-    return replace(item, support=Support.FREESTANDING)
-
-
 def _tried(item: Item, row: ObjectClass, as_mounted: tuple[str, ...] | None = None) -> tuple[str, ...]:
     """Return the models that are tried on an object of a class: those of its class, or of how it is held, and more."""
     models = () if set(row.models) & {NO_MODEL, WHEN_HELD} else row.models
@@ -466,15 +436,8 @@ def _unheld(item: Item, support: Support) -> list[str]:
     """Say that the support is missing where a thing is too thin to stand and nothing tells how it is held."""
     if item.support is not None or support is not Support.FREESTANDING:
         return []
-    times = _too_slender(item)
+    times = too_slender(item)
     return [too_thin(times)] if times else []
-
-
-def _too_slender(item: Item) -> float:
-    """Return how many times as high as deep a thing is that by that cannot stand by itself; else 0."""
-    plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d]
-    times = item.height_m / min(plan) if plan and item.height_m is not None else 0.0
-    return times if times > SLENDEREST else 0.0
 
 
 @cache
