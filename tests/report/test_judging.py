@@ -9,7 +9,7 @@ from lxml import etree
 from pipeline.analysis.classify import classify
 from pipeline.quantities import G
 from pipeline.records import Fragility, Furniture, Item, Spacing, Verdict
-from pipeline.report.pages.describe import furniture
+from pipeline.report.pages.describe import _rule_words, furniture
 from pipeline.report.pages.judging import fragility_views, shaking_view, spacing_views, years
 from pipeline.report.units import Units
 
@@ -128,3 +128,11 @@ def test_what_an_object_stands_in_is_said_with_where_that_is_known_from() -> Non
         "in a showcase (assumed)", "on a shelf (as recorded)", "on a pedestal or plinth (as its record names a case)",
         "", "from a rail or the ceiling (as recorded)",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "rule",
+    ["sculpture-small: a small sculpture", "bust: a bust (named 'bust')", "decided by Ann: a cabinet"],
+)
+def test_by_which_rule_an_object_is_of_its_class_is_said_once(rule: str) -> None:
+    assert _rule_words(rule) == rule

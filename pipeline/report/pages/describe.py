@@ -494,4 +494,4 @@ def _rule_words(rule: str) -> str:
     """Return by which rule an object is of its class: the rule's name, and in the reader's language why."""
     name, colon, why = rule.partition(": ")
     told, bracket, found = why.rpartition(" (")
-    return f"{name}{colon}{said(told) if bracket else said(why)}{bracket}{found}"
+    return f"{name}{colon}{said(told)}{bracket}{found}" if bracket else f"{name}{colon}{said(why)}"
