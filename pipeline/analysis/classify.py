@@ -22,20 +22,19 @@ from pipeline.analysis.object_class import TakenClass, class_of
 from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
+from pipeline.analysis.told import as_told, too_slender
 from pipeline.analysis.usual import clearance_of, friction_of, own_damping, wall_damping_of
 from pipeline.models import MODELS, model_named
+from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
-from pipeline.records import Estimate, Furniture, Item, Origin, Scene, Support, too_thin
+from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin, Scene, Support, too_thin
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
 
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
-
-SLENDEREST = 9.0
-"""Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
 
 
 def material_of(item: Item, values: AssumedValues | None = None) -> Material:
@@ -120,7 +119,7 @@ class _Builder:
             self._pendulum()
         elif self.item.height_m is None and "hook_depth" not in self.found and self.hanging.known not in LOCKED:
             self.missing.append("height")
-        self._weigh("height", "width")
+        self._weigh("height", "width", *(() if self.row.filled is None else ("depth",)))
 
     def _pendulum(self) -> None:
         item = self.item
@@ -319,7 +318,7 @@ def _known_of(
     row = values.classes[taken.name]
     if house is None:
         return taken, row, NO_EFFECT, values
-    said = house.effect(item, row.name, item.support or row.support, mounts=WHEN_HELD in row.models)
+    said = house.effect(item, row.name, as_told(item, row).support or row.support, mounts=WHEN_HELD in row.models)
     return taken, row, said, values
 
 
@@ -363,12 +362,13 @@ def furniture_kind(
 ) -> Furniture:
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
     _, row, said, _ = _known_of(item, rules, decided, house)
-    support = said.laid_over(item).support or row.support
+    support = as_told(said.laid_over(item), row).support or row.support
     return furniture_of(item, row.name, support, said).furniture
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
-    stands = house.laid_over(item)
+    laid = house.laid_over(item)
+    stands = as_told(laid, row)
     support = stands.support or row.support
     mount = mount_of(stands, row, house)
     models = _tried(stands, row, None if mount is None else mount.row.models)
@@ -379,6 +379,9 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     builder.build()
     if mount is None:
         builder.missing.extend(_unheld(stands, support))
+    if support is Support.ISOLATED and item.isolator != FRICTION_ISOLATOR.name:
+        # Its record has no numbers of springs: as if it stood on the floor it would be told to be off display.
+        builder.missing.append(UNTOLD_ISOLATOR)
     missing = tuple(builder.missing) if _needs_size(models) else ()
     known = builder.found
     for estimates in _estimates_of(models):
@@ -386,7 +389,9 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     hanging = None if builder.hanging is None else builder.hanging.known
-    if mount is not None and mount.note:
+    if stands.support is not laid.support:
+        assumptions.insert(0, say.SUPPORT_TOLD(support=support.value))
+    elif mount is not None and mount.note:
         assumptions.insert(0, mount.note)
     elif stands.support is None:
         assumptions.insert(0, f"{say.SUPPORT(support=support.value, told=row.told)}; {say.NOT_RECORDED()}")
@@ -400,6 +405,8 @@ def _tried(item: Item, row: ObjectClass, as_mounted: tuple[str, ...] | None = No
     models = () if set(row.models) & {NO_MODEL, WHEN_HELD} else row.models
     if as_mounted is not None:
         models = as_mounted
+    elif item.support is Support.ISOLATED and item.isolator != FRICTION_ISOLATOR.name:
+        models = models or models_of(Support.FREESTANDING)
     elif item.support is not None and (item.support is not row.support or not (models or row.models == (NO_MODEL,))):
         models = models_of(item.support)
     for name, joins in _joining():
@@ -428,13 +435,10 @@ def unclassified(item: Item) -> Scene:
 
 def _unheld(item: Item, support: Support) -> list[str]:
     """Say that the support is missing where a thing is too thin to stand and nothing tells how it is held."""
-    plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d]
-    if item.support is not None or support is not Support.FREESTANDING or not plan or item.height_m is None:
+    if item.support is not None or support is not Support.FREESTANDING:
         return []
-    times = item.height_m / min(plan)
-    if times <= SLENDEREST:
-        return []
-    return [too_thin(times)]
+    times = too_slender(item)
+    return [too_thin(times)] if times else []
 
 
 @cache

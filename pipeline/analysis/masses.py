@@ -9,6 +9,7 @@ from math import pi
 from pipeline.records import Estimate, Item, Origin
 from pipeline.records import phrases as say
 from pipeline.tables import Range
+from pipeline.tables.assumed import UNKNOWN
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.fill_rows import fills
 
@@ -17,7 +18,7 @@ _FRAMED = (5.0, 15.0, 40.0)
 
 
 def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Estimate | None:
-    """Return the mass of an object [kg]: as recorded, else by its area where it hangs, else by what fills its outline.
+    """Return the mass of an object [kg]: as recorded, else by what fills its outline, else by its area where it hangs.
 
     Parameters
     ----------
@@ -37,12 +38,14 @@ def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Est
     """
     if item.mass_kg is not None:
         return Estimate.measured(item.mass_kg, "kg")
-    if hung and item.height_m and item.width_m:
+    box, own = _outline(item, row), _metal_fill(row, material)
+    fill = own or row.filled
+    # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
+    by_volume = fill is not None and item.depth_m is not None and material.name != UNKNOWN
+    if hung and item.height_m and item.width_m and not by_volume:
         area, (low, best, high) = item.height_m * item.width_m, _FRAMED
         note = say.MASS_OF_FRAMED(mass=_FRAMED)
         return Estimate.assumed(best * area, low * area, high * area, "kg", note, "judgement")
-    box, own = _outline(item, row), _metal_fill(row, material)
-    fill = own or row.filled
     if fill is None or box is None:
         return None
     density = material.density_range

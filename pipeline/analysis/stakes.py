@@ -21,7 +21,7 @@ from math import exp
 
 from pipeline.analysis.furniture import SHELF_HEIGHT
 from pipeline.quantities import G
-from pipeline.records import Assessment, Furniture, Harm, Scene, Support
+from pipeline.records import Assessment, Furniture, Harm, Mount, Scene, Support
 from pipeline.tables import Range, table
 from pipeline.tables.assumed import assumed
 from pipeline.tables.rows import RangeRow, Text, checked
@@ -193,15 +193,23 @@ def expected_loss(assessment: Assessment) -> float:
 
 def to_check(assessment: Assessment) -> bool:
     """Say whether the record of an object is to be checked before anything is done about it."""
-    return assessment.likelihood is not None and doubtful(assessment.scene) > 0.0
+    scene = assessment.scene
+    return assessment.likelihood is not None and (doubtful(scene) > 0.0 or ill_weighed(scene))
+
+
+def ill_weighed(scene: Scene) -> bool:
+    """Say whether the recorded mass and sizes cannot both be true: what is built for them would not fit the object."""
+    return scene.item.mass_kg is not None and any(problem.field == "mass_kg" for problem in scene.item.problems)
 
 
 def doubtful(scene: Scene) -> float:
     """Return how many times as high as it is deep an object is whose record is to be looked at first; else 0.
 
-    One whose base or whose support is recorded stands as it is.
+    One whose base or whose support is recorded stands as it is; what lies, leans or is held does not stand at all.
     """
     item = scene.item
+    if scene.mount not in (None, Mount.STANDING):
+        return 0.0
     sides = [side for side in (item.width_m, item.depth_m) if side]
     if scene.support is not Support.FREESTANDING or item.support is not None or not item.height_m or not sides:
         return 0.0

@@ -21,7 +21,7 @@ from pipeline.models import model_named, tips
 from pipeline.models.rocking import ROCKING
 from pipeline.models.sliding import SLIDING
 from pipeline.models.unanchored import UNANCHORED
-from pipeline.records import Finding, Likelihood, Numerics, Sampling, Scene
+from pipeline.records import UNTOLD_ISOLATOR, Finding, Likelihood, Numerics, Sampling, Scene, Support
 
 ON_TOP = "Under the motion that its isolator passes on"
 
@@ -114,6 +114,7 @@ def placed_more(
         before = stands.scene if stands.above is None else stands.above
         try:
             measure = catalogue.named(installed.name)
+            before = _told_now(before) if measure.isolator else before
             after = measure.change(before, installed.parameters)
         except KeyError as unknown:
             said = f"{installed.name} is installed ({installed.words}), but is not computed: {unknown} is not known"
@@ -128,6 +129,14 @@ def placed_more(
         else:
             stands = Placed(after)
     return stands
+
+
+def _told_now(scene: Scene) -> Scene:
+    """Return what stands on an isolator by its record as on the floor: that which is written down goes under it."""
+    if UNTOLD_ISOLATOR not in scene.missing:
+        return scene
+    missing = tuple(one for one in scene.missing if one != UNTOLD_ISOLATOR)
+    return replace(scene, support=Support.FREESTANDING, missing=missing)
 
 
 def _told(before: Scene, after: Scene, words: str) -> Scene:

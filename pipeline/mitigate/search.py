@@ -31,7 +31,7 @@ from pipeline.mitigate.proposals import (
 )
 from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
 from pipeline.models.common import N_
-from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
+from pipeline.records import Estimate, Finding, Likelihood, Mark, Numerics, Origin, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 from pipeline.tables.mount_rows import mount_rows
 
@@ -46,6 +46,15 @@ AT_BEST = (
 
 SIZED = "It holds so by the best estimates of weight, base and strength: weigh it and measure its base first."
 """Follows the sentence of a fixing that has its factor of safety by the best estimates, and whose models all pass."""
+
+HEAVIEST = (
+    "That is for {heaviest}, the most that it may weigh; by the best estimate it weighs {weight}: "
+    "weigh it first, as so much less is enough in proportion."
+)
+"""Follows the sentence of a measure that is built for a force, where its mass is assumed and may be twice the best."""
+
+UNWEIGHED = 2.0
+"""Largest over best estimate of an assumed mass from which on whoever builds for a force is told so."""
 
 ANCHORED = "Fasten what it stands in to the floor or a wall first."
 """Comes before the sentence of a measure that is enough only where its furniture is fastened too."""
@@ -393,6 +402,11 @@ class _Search:
             numbers = {**candidate.numbers, **candidate.finish(ran)}
             name, title, sentence = measure.called(one.scene.item)
             more = f" {AT_BEST}" if at_best else f" {SIZED}" if candidate.at_best else ""
+            mass = one.scene.parameters.get("mass")
+            # The force on pieces is told by the best estimate of its mass, their number by the worst.
+            if "force" in numbers and "pieces" not in numbers and mass is not None and _unweighed(mass):
+                numbers |= {"heaviest": (mass.high, "kg"), "weight": (mass.value, "kg")}
+                more = f" {HEAVIEST}{more}"
             self.helped.add(one.index)
             if measure.fastens:
                 self.fastened.add(one.index)
@@ -436,6 +450,10 @@ def _filled(sentence: str, words: Mapping[str, str]) -> str:
         return found[0] if text is None else text.replace("{", "{{").replace("}", "}}")
 
     return re.sub(r"{(\w+)}", said, sentence)
+
+
+def _unweighed(mass: Estimate) -> bool:
+    return mass.origin is Origin.ASSUMED and mass.high >= UNWEIGHED * mass.value
 
 
 def _band_unknown(scene: Scene) -> bool:

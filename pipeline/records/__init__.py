@@ -31,6 +31,7 @@ from pipeline.records.run import RunRecord
 from pipeline.records.scene import (
     ITEM_FIELDS,
     SECTION_SHAPES,
+    UNTOLD_ISOLATOR,
     Anchorage,
     Estimate,
     Furniture,
@@ -50,6 +51,7 @@ from pipeline.records.state import State, standing, state_of
 __all__ = [
     "ITEM_FIELDS",
     "SECTION_SHAPES",
+    "UNTOLD_ISOLATOR",
     "Account",
     "Anchorage",
     "Assessment",

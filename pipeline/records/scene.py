@@ -386,6 +386,9 @@ class Scene:
         return None if hangs and self.furniture_origin is Origin.ASSUMED else self.furniture_origin
 
 
+UNTOLD_ISOLATOR = "what its isolator does: write it down as installed (kouros decide)"
+"""What is missing of an object that stands on an isolator, by its record, of which no numbers are known."""
+
 _TOO_THIN = ("support (it is ", " times as high as it is deep: it cannot stand by itself, or a measure is wrong)")
 
 

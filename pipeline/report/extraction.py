@@ -18,10 +18,10 @@ from pipeline.mitigate.measures import MEASURES
 from pipeline.mitigate.measures.horizontal_isolator import GENERIC
 from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
-from pipeline.mitigate.search import ANCHORED, AT_BEST, ONLY_HERE, SIZED
+from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, ONLY_HERE, SIZED
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
-from pipeline.records import Anchorage, Item, Support
+from pipeline.records import UNTOLD_ISOLATOR, Anchorage, Item, Support
 from pipeline.records.phrases import PHRASES
 from pipeline.report.text import bare
 from pipeline.tables import table
@@ -81,7 +81,8 @@ def _of_measures() -> Iterator[str]:
             yield sentence.replace("{what}", IT).replace("{product}", GENERIC).replace(" {how}", "")
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
-    yield from (ONLY_HERE, AT_BEST, SIZED, ANCHORED, NAMED_FIRST, *(row.care for row in fixing_strengths().values()))
+    yield from (ONLY_HERE, AT_BEST, SIZED, HEAVIEST, ANCHORED, NAMED_FIRST)
+    yield from (row.care for row in fixing_strengths().values())
 
 
 def _of_assumptions() -> Iterator[str]:
@@ -108,7 +109,7 @@ def _names() -> Iterator[str]:
     names += [STORED, *object_classes(), *Support, *Anchorage]
     yield from (bare(name) for name in names)
     yield from ("width (or diameter)", "height or suspension length", "height of the centre of gravity")
-    yield "width of its weakest section"
+    yield from ("width of its weakest section", UNTOLD_ISOLATOR)
     yield from map(bare, (FREQUENCY, DAMPING, LEVEL_ERROR))
     yield from (f"no generic model applies: it {row['why']}" for row in table("classes") if row["models"] == "none")
     # Whoever chooses one of them at the desk reads its title.

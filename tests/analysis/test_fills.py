@@ -1,6 +1,7 @@
 """Masses that are assumed against masses that museums recorded."""
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -52,3 +53,26 @@ def test_a_museums_own_row_of_a_class_goes_before(tmp_path: Path) -> None:
     item = Item("1", "Hall", object_name="Vase", medium="Silver", height_m=0.2, width_m=0.1, depth_m=0.1)
     plain, theirs = classify(item).parameters["mass"], classify(item, with_own(None, own)).parameters["mass"]
     assert theirs.value > 5.0 * plain.value
+
+
+@pytest.mark.parametrize(
+    ("sizes", "medium", "weighs"),
+    [
+        # A slab of limestone as thick as its box, less a tenth that is carved away: 0.107 m3 x 2.6 t/m3.
+        ((0.9, 1.1, 0.12), "limestone", 280.0),
+        # A bronze plaque cast 8 mm thick: 0.4 x 0.3 x 0.008 m x 8700 kg/m3, in a box of 2 cm.
+        ((0.4, 0.3, 0.02), "bronze", 8.4),
+        # A carved panel of oak as thick as its box.
+        ((1.0, 0.5, 0.05), "oak", 17.5),
+    ],
+)
+def test_a_slab_on_a_wall_weighs_what_its_material_does(
+    sizes: tuple[float, float, float], medium: str, weighs: float
+) -> None:
+    height, width, depth = sizes
+    relief = Item("1", "G", object_name="relief", medium=medium, height_m=height, width_m=width, depth_m=depth)
+    mass = classify(relief).parameters["mass"]
+    assert mass.low <= weighs <= mass.high
+    # Without its depth or its material it is as what hangs on walls.
+    for bare in (replace(relief, medium=""), Item("2", "G", object_name="painting", height_m=height, width_m=width)):
+        assert classify(bare).parameters["mass"].value == pytest.approx(15.0 * height * width)

@@ -18,9 +18,12 @@ from pipeline.execute import Threads
 from pipeline.mitigate import changed
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures.brace import LEVER, STIFFER
+from pipeline.mitigate.search import HEAVIEST, UNWEIGHED
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
-from pipeline.records import Hanging, Motion, Numerics, Support, Verdict
+from pipeline.records import Furniture, Hanging, Item, Motion, Numerics, Support, Verdict
+from pipeline.report.pages.plainly import plain_measure
+from pipeline.report.units import Units
 from pipeline.tables import table
 
 from .scenes import BLOCK, HEAVY, PICTURE, STUMP, TOWER, demo_motion, rejected, solve, solve_all
@@ -56,6 +59,24 @@ def test_fastening_is_the_right_answer(motion: Motion) -> None:
     assert {"Non-slip pad", "Padded clamps"} <= set(rejected(advice))
 
 
+def test_whoever_builds_for_a_mass_that_is_assumed_is_told_what_it_may_be(motion: Motion) -> None:
+    """The outline of a bronze is filled to 0.3 % or to a third: a mount for the heaviest is told to be that."""
+    unweighed = replace(
+        HEAVY, mass_kg=None, height_m=2.4, cg_height_m=1.2, width_m=0.5, depth_m=0.5, base_width_m=0.5,
+        base_depth_m=0.5, section_width_m=0.3, section_depth_m=0.3,
+    )  # fmt: skip
+    mass = classify(unweighed).parameters["mass"]
+    assert mass.high >= UNWEIGHED * mass.value
+    advice = solve(unweighed, motion)
+    assert advice.measure == "fasten"
+    assert advice.sentence.endswith(HEAVIEST)
+    assert (advice.parameters["heaviest"], advice.parameters["weight"]) == (mass.high, mass.value)
+    assert advice.parameters["force"] / advice.parameters["heaviest"] > 0.7 * G
+    told = plain_measure(advice, Units())
+    assert "the most that it may have; by the best estimate it is" in told
+    assert HEAVIEST not in solve(HEAVY, motion).sentence
+
+
 def test_rubber_pads_are_the_right_answer(motion: Motion) -> None:
     """Paper, Table 4: damping 0.06 instead of 0.02; room is asked for first, so the wall must have none to spare."""
     strong = motion.scaled(2.0, "until room alone is not enough")
@@ -72,6 +93,18 @@ def test_a_second_fixing_is_the_right_answer(motion: Motion) -> None:
     assert advice.measure == "restrain"
     push = float(np.hypot(*strong.acceleration[:2]).max())
     assert advice.parameters["force"] == pytest.approx(8.0 * push)
+
+
+def test_stays_are_the_right_answer_for_what_hangs_from_above_without_room(motion: Motion) -> None:
+    """A canoe of 120 kg: each of the lines at 45 degrees bears m A / cos 45; nothing else, least of all removal."""
+    canoe = Item("3", "G", object_name="canoe", medium="wood", support=Support.SUSPENDED, height_m=0.5, width_m=5.0,
+                 depth_m=0.8, mass_kg=120.0, suspension_length_m=1.5, clearance_m=0.05)  # fmt: skip
+    strong = motion.scaled(4.0, "test")
+    advice = solve(canoe, strong)
+    assert advice.measure == "stays"
+    push = float(np.hypot(*strong.acceleration[:2]).max())
+    assert advice.parameters["force"] == pytest.approx(120.0 * push * np.sqrt(2.0))
+    assert "Fix to the wall" in rejected(advice)
 
 
 def test_an_isolator_is_the_right_answer(motion: Motion) -> None:
@@ -118,6 +151,18 @@ def test_another_surface_is_the_right_answer(motion: Motion) -> None:
     assert advice.parameters["friction"] == 0.18
     assert advice.parameters["movement"] >= on_formica
     assert rejected(advice) == ["Keep clear", "Rubber pads behind it"]
+
+
+def test_nothing_in_a_case_is_set_on_plywood(motion: Motion) -> None:
+    """Of metal, plywood (0.37) is all that Table 3 has above terrazzo: it is the answer, but not in a case."""
+    x, y, z = 3.5 * motion.acceleration
+    strong = motion.changed([x, y, 0.0 * z], "until room alone is not enough, and nothing is lifted")
+    metal = replace(BLOCK, base_material="Aluminum", friction=0.24, clearance_m=0.2, base_width_m=2.0, base_depth_m=2.0)
+    on_floor, in_case = (solve(replace(metal, furniture=one), strong) for one in (Furniture.FLOOR, Furniture.SHOWCASE))
+    assert (on_floor.measure, on_floor.sentence[:19]) == ("surface", "Stand it on plywood")
+    assert in_case.measure != "surface"
+    (why,) = (text for text in in_case.rejected if text.startswith("Another surface"))
+    assert why == "Another surface: in a case plywood gives off acids that corrode metals, shell and glass"
 
 
 def test_ballast_is_the_right_answer(motion: Motion) -> None:

@@ -20,7 +20,7 @@ from pipeline.mitigate.search import AT_BEST, SIZED
 from pipeline.mitigate.trials import TrialRunner
 from pipeline.models.rigid_body import UNHARMED
 from pipeline.quantities import G
-from pipeline.records import Item, Motion, Recommendation
+from pipeline.records import Furniture, Item, Motion, Recommendation
 from pipeline.records.numerics import VERDICTS
 from pipeline.tables import TableError
 from pipeline.tables.rows import checked
@@ -382,3 +382,13 @@ def test_the_moment_is_that_over_all_samples(combine: str) -> None:
         each = (arm * push - base * weight).max(axis=1)
         expected = max(0.0, each.mean() if combine == "mean" else each.max())
         assert runner.tipping(arm, base) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("medium", ["coton, dentelle", "soie", "Seide", "seda", "lana e cotone", "cuir"])
+def test_nobody_waxes_a_bonnet(medium: str, motion: Motion) -> None:
+    """Wax soaks into cloth and leather, in whatever language these are written."""
+    bonnet = Item("1", "G", object_name="coin", medium=medium, height_m=0.02, width_m=0.1, depth_m=0.11, mass_kg=0.05,
+                  clearance_m=0.01, furniture=Furniture.FLOOR)  # fmt: skip
+    advice = solve(bonnet, motion.scaled(4.0, "test"))
+    assert advice.measure not in {"wax", "putty"}
+    assert "Microcrystalline wax: it harms paper" in advice.rejected

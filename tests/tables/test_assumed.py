@@ -243,3 +243,36 @@ def test_kouros_own_tables_are_the_files(tmp_path: Path) -> None:
         assert (float(row["density"]), float(row["tensile"])) == (stuff.density, stuff.tensile)
     assert [float(row["value"]) for row in table("friction")] == [row.value for row in assumed().friction]
     assert [float(row["value"]) for row in table("damping")] == [row.value for row in assumed().damping]
+
+
+@pytest.mark.parametrize(
+    ("words", "material"),
+    [
+        # As museums of these countries write: the translations are those of the AAT.
+        ("coton (dentelle, tissé)", "paper"), ("soie, taffetas", "paper"), ("Seide, Baumwolle", "paper"),
+        ("cuero y lana", "paper"), ("tessuto di seta", "paper"), ("zijde en wol", "paper"), ("μετάξι", "paper"),
+        ("argent (appliqué)", "silver"), ("Silber, vergoldet", "silver"), ("argento dorato", "silver"),
+        ("plata repujada", "silver"), ("zilver", "silver"), ("Zinn", "silver"),
+        ("terre cuite", "terracotta"), ("Terrakotta", "terracotta"), ("barro cocido", "terracotta"),
+        ("lut ars", "terracotta"), ("πηλός", "terracotta"), ("aardewerk", "terracotta"),
+        ("faïence stannifère", "glazed earthenware"), ("Porzellan", "porcelain"), ("porțelan", "porcelain"),
+        ("verre soufflé", "glass"), ("vetro", "glass"), ("vidrio", "glass"), ("sticlă", "glass"),
+        ("laiton", "bronze"), ("alliage cuivreux, papier", "bronze"), ("Messing", "bronze"), ("alamă", "bronze"),
+        ("fer forgé", "iron"), ("hierro", "iron"), ("Schmiedeeisen; Eisen", "iron"), ("oro", "gold"),
+        ("marbre blanc", "marble"), ("mármore", "marble"), ("μάρμαρο", "marble"), ("Kalkstein", "stone"),
+        ("bois, chêne", "wood"), ("Lindenholz, gefasst", "wood"), ("legno dorato", "wood"), ("madera", "wood"),
+        ("ivoire", "ivory"), ("Elfenbein", "ivory"), ("mother of pearl", "ivory"), ("résine", "plastic"),
+        ("plâtre", "plaster"), ("Gips", "plaster"),
+        # English words that are another language's word for a material are not read as that.
+        ("acrylic with 1 or 2 motors", "plastic"), ("wood or bone", "wood"),
+    ],
+)  # fmt: skip
+def test_a_material_is_known_by_its_name_in_the_languages_that_classes_are_known_by(words: str, material: str) -> None:
+    found = assumed().material_in(words)
+    assert found is not None
+    assert found.name == material
+
+
+def test_no_word_names_two_materials() -> None:
+    words = [word.lower() for one in assumed().materials.values() for word in one.words]
+    assert len(words) == len(set(words))

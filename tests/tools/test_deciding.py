@@ -231,12 +231,13 @@ def test_each_measure_that_can_be_installed_changes_a_scene() -> None:
     standing = Item("1", "G", object_name="vase", height_m=0.4, width_m=0.2, depth_m=0.2, mass_kg=3.0)
     hung = Item("2", "G", object_name="painting", height_m=0.8, width_m=0.6, support=Support.HUNG)
     loose = replace(standing, furniture_anchorage=Anchorage.UNANCHORED)
+    above = Item("3", "G", object_name="chandelier", height_m=0.8, mass_kg=20.0)
     on_walls = ("rubber_pads", "restrain", "close_hooks")
     known = own_catalogue().installable
     assert set(known) == {row["measure"] for row in table("measures")} - {"remove"}
     for name, measure in known.items():
         parameters = {q.name: 2.0 if q.name == "enlargement" else 0.4 for q in measure.parameters}
-        scene = classify({"anchor": loose}.get(name, hung if name in on_walls else standing))
+        scene = classify({"anchor": loose, "stays": above}.get(name, hung if name in on_walls else standing))
         stands = placed(scene, [InstalledMeasure(name, parameters, "decided by Ann on 2031-05-01: because")])
         assert stands.scene.parameters != scene.parameters or stands.scene.support is not scene.support, name
         assert not any("not computed" in text for text in stands.scene.assumptions), name

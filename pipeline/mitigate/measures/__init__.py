@@ -19,7 +19,7 @@ from pipeline.mitigate.measures.friction_isolator import FrictionIsolator
 from pipeline.mitigate.measures.hold import Hold
 from pipeline.mitigate.measures.horizontal_isolator import HorizontalIsolator
 from pipeline.mitigate.measures.remove import Remove
-from pipeline.mitigate.measures.restrain import Restrain
+from pipeline.mitigate.measures.restrain import Restrain, Stays
 from pipeline.mitigate.measures.restraints import Brackets, Clamps, Clips, Pins, Ties
 from pipeline.mitigate.measures.rotational_isolator import RotationalIsolator
 from pipeline.mitigate.measures.rubber_pads import RubberPads
@@ -82,6 +82,7 @@ MEASURES: Registry[type[Measure]] = Registry(
         CloseHooks,
         Hold,
         Restrain,
+        Stays,
         FrictionIsolator,
         HorizontalIsolator,
         RotationalIsolator,

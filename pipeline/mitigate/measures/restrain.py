@@ -1,8 +1,11 @@
-"""A second fixing at the lower corners of what hangs on a wall: nothing is left that swings, slaps or lifts off."""
+"""What hangs is kept from swinging: a second fixing at the lower corners on a wall, stays of what hangs from above."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import ClassVar
 
 from pipeline.mitigate.measures.base import SPARE, Measure, exactly, rehung, with_parameters
+from pipeline.mitigate.measures.restraints import INCLINED
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models.common import N_
@@ -21,6 +24,9 @@ class Restrain(Measure):
     name = "restrain"
     gives = ("force",)
     for_room = True
+    support: ClassVar[Support] = Support.HUNG
+    elsewhere: ClassVar[str] = N_("it does not hang on a wall")
+    share: ClassVar[float] = 1.0
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it fixed to its wall above and below."""
@@ -29,8 +35,8 @@ class Restrain(Measure):
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
         """Propose fixings for the force of the push."""
         scene = one.scene
-        if scene.support is not Support.HUNG:
-            return refused(N_("it does not hang on a wall"))
+        if scene.support is not self.support:
+            return refused(self.elsewhere)
         mass = scene.parameters.get("mass")
         if mass is None:
             return refused(N_("its mass is not known, so the force on the fixings cannot be given"))
@@ -39,4 +45,23 @@ class Restrain(Measure):
         strength = SPARE * fixed.parameters["amplification"].high * runner.largest(pull)
         built = exactly(strength, "-", "strength of fixings that are built for the force")
         trial = Trial(with_parameters(fixed, hanger_strength=built))
-        return Proposal((Candidate({"force": (mass.high * runner.push, "N")}, (trial,)),))
+        return Proposal((Candidate({"force": (mass.high * runner.push / self.share, "N")}, (trial,)),))
+
+
+class Stays(Restrain):
+    """Stay what hangs from above to all sides: it moves with the building, and each stay may have to bear the push.
+
+    References
+    ----------
+    FEMA E-74 (2012), sec. 6.4.9: heavy light fixtures are braced by inclined wires to all sides.
+    """
+
+    name = "stays"
+    support = Support.SUSPENDED
+    elsewhere = N_("it does not hang from above")
+    # A line bears tension alone, and at 45 degrees more of it than the push.
+    share = INCLINED
+
+    def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:
+        """Return it fixed: what is left is the load on what holds it."""
+        return super().change(replace(scene, support=Support.HUNG), parameters)

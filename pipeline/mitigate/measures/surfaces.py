@@ -9,7 +9,7 @@ from pipeline.mitigate.measures.base import FRICTION, NOT_FREE, Measure, movemen
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models.common import N_
-from pipeline.records import Scene, Support
+from pipeline.records import Furniture, Scene, Support
 
 
 class _RougherSurface(Measure, ABC):
@@ -39,6 +39,13 @@ class _RougherSurface(Measure, ABC):
         return None
 
 
+FUMING = frozenset({"plywood"})
+"""Surfaces of Table 3 that give off acids: in the air of a case these corrode lead and bronze, shell and some glasses.
+
+Tétreault 2003, Airborne Pollutants in Museums, Galleries and Archives.
+"""
+
+
 class Surface(_RougherSurface):
     """Put it on the least rough surface of Table 3 that is rougher than its own and holds its base well enough."""
 
@@ -57,8 +64,11 @@ class Surface(_RougherSurface):
             (row.low, row.surface_material) for row in runner.values.friction if row.object_material.lower() == material
         ]
         rougher = sorted(pair for pair in pairs if least < pair[0] <= self.row.limit)
+        harmless = [pair for pair in rougher if pair[1].lower() not in FUMING]
+        if one.scene.furniture is Furniture.SHOWCASE and rougher and not harmless:
+            return refused(N_("in a case plywood gives off acids that corrode metals, shell and glass"))
         candidates = []
-        for friction, surface in rougher:
+        for friction, surface in harmless if one.scene.furniture is Furniture.SHOWCASE else rougher:
             numbers = {"friction": (friction, "-")}
             trial = Trial(self.in_place(one, numbers))
             words = {"surface": surface.lower()}

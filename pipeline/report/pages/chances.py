@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from pipeline.analysis.classify import object_classes
-from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss, to_check
+from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss, ill_weighed, to_check
 from pipeline.analysis.survey import measurables, size_behind
 from pipeline.records import Assessment, Band, Harm, IfClass, Likelihood, Mount, Recommendation, Scene
 from pipeline.records.likelihood import CLASS
@@ -66,6 +66,9 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
             "and such a thing hardly stands like that."
         )
         check %= {"times": local(f"{slender:.1f}")}
+    ill = ill_weighed(assessment.scene)
+    if ill:
+        check = " ".join(filter(None, (check, _("Check its record first: its weight does not go with its size."))))
     unnamed = _unnamed(found)
     if unnamed:
         asked = _(" or ").join(f"“{class_title(name)}”" for one in found.classes for name in one.classes)
@@ -82,7 +85,7 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         _percent(found.probability),
         round(100.0 * found.probability, 1),
         bool(found.harm) and found.band in _RATHER and Harm(found.harm) in _LOST,
-        bool(slender),
+        bool(slender) or ill,
     )
 
 

@@ -427,6 +427,7 @@ _WORDS = {
     "close_hooks": (lambda: _("close its hooks"), lambda: _("its hooks closed")),
     "hold": (lambda: _("hold it on its mount"), lambda: _("held on its mount")),
     "restrain": (lambda: _("fix it to the wall"), lambda: _("fixed to the wall")),
+    "stays": (lambda: _("stay it to all sides"), lambda: _("stayed to all sides")),
     "friction_isolator": (lambda: _("stand it on a low-friction pad"), lambda: _("on a low-friction pad")),
     "horizontal_isolator": (lambda: _("put it on a horizontal isolator"), lambda: _("on a horizontal isolator")),
     "rotational_isolator": (lambda: _("mount it on a rotational isolator"), lambda: _("on a rotational isolator")),

@@ -6,7 +6,7 @@ The full sentence of a measure, with the moment, the margin and the friction, st
 from collections.abc import Callable, Mapping
 
 from pipeline.mitigate.by_class import NAMED_FIRST
-from pipeline.mitigate.search import ANCHORED, AT_BEST, SIZED
+from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, SIZED
 from pipeline.records import Recommendation
 from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
@@ -38,6 +38,13 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     except KeyError:
         # Results of another version may lack a number: its title is true in any case.
         told.append(f"{said(clean(advice.title))}.")
+    if HEAVIEST in advice.sentence:
+        told.append(
+            _("That is for a weight of %(heaviest)s, the most that it may have; by the best estimate it is %(weight)s.")
+            % numbers
+        )
+        if AT_BEST not in advice.sentence:
+            told.append(_("Weigh it first: so much less is enough in proportion."))
     if NAMED_FIRST in advice.sentence:
         told.append(_("Before that, say what it is: for another kind of object this may not be enough."))
     if AT_BEST in advice.sentence:
@@ -81,6 +88,10 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
     "close_hooks": lambda: _("Close its hooks, so that it cannot jump out of them."),
     "hold": lambda: _("Have a mount-maker hold it on its mount, for %(times)s times its weight."),
     "restrain": lambda: _("Fix it to the wall at its lower corners too: the fixings must hold %(force)s together."),
+    "stays": lambda: _(
+        "Have it stayed from swinging by three or more lines or rods to the ceiling or the walls all round: each must "
+        "hold %(force)s."
+    ),
     "friction_isolator": lambda: _("Stand it on a low-friction pad, with %(clearance)s free on all sides."),
     "horizontal_isolator": lambda: _("Have it put on an isolator that moves by up to %(stroke)s."),
     "rotational_isolator": lambda: _("Have it mounted on an elastic pad."),
