@@ -43,8 +43,7 @@ class AssumedValues:
 
     @cached_property
     def _words(self) -> tuple[tuple[re.Pattern[str], Material], ...]:
-        words = ((tuple(map(re.escape, one.words)), one) for one in self.materials.values())
-        return tuple((re.compile(rf"\b(?:{'|'.join(some)})\b", re.IGNORECASE), one) for some, one in words if some)
+        return tuple((_any_of(one.words), one) for one in self.materials.values() if one.words)
 
     @property
     def own(self) -> dict[str, int]:
@@ -119,11 +118,18 @@ class AssumedValues:
         return tuple(_matching(self.damping, wall_surface, back_surface))
 
 
+_UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 _FINISH = re.compile(
     r"\b(?:\w+-|(?:tin|lead|salt|silver|copper|iron)\s+)(?=glaze)"
     r"|\b\w+-(?:plated|coated|painted|leafed|fired|colou?red|toned|inlaid|trimmed|mounted|lined)\b",
     re.IGNORECASE,
 )
+
+
+def _any_of(words: Sequence[str]) -> re.Pattern[str]:
+    # Chinese, Japanese and Korean part no words from each other.
+    parted = [re.escape(word) if _UNPARTED.match(word) else rf"\b{re.escape(word)}\b" for word in words]
+    return re.compile("|".join(parted), re.IGNORECASE)
 
 
 @lru_cache(maxsize=65536)
