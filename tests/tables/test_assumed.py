@@ -264,8 +264,9 @@ def test_kouros_own_tables_are_the_files(tmp_path: Path) -> None:
         ("ivoire", "ivory"), ("Elfenbein", "ivory"), ("mother of pearl", "ivory"), ("résine", "plastic"),
         ("plâtre", "plaster"), ("Gips", "plaster"),
         # Chinese, Japanese and Korean part no words; the first material that a text names is the thing's.
-        ("木造、彩色", "wood"), ("木心乾漆", "wood"), ("銅造鍍金", "bronze"), ("紙本墨画", "paper"), ("絹本着色", "paper"),
-        ("磁器、染付", "porcelain"), ("鉄地金銀象嵌", "iron"), ("大理石", "marble"), ("石造", "stone"), ("铜", "bronze"),
+        ("木造、彩色", "wood"), ("木心乾漆", "wood"), ("銅造鍍金", "bronze"), ("紙本墨画", "paper"),
+        ("絹本着色", "paper"), ("磁器、染付", "porcelain"), ("鉄地金銀象嵌", "iron"), ("大理石", "marble"),
+        ("石造", "stone"), ("铜", "bronze"),
         ("청동", "bronze"), ("백자", "porcelain"), ("drewno polichromowane", "wood"), ("brąz, złocony", "bronze"),
         ("szkło", "glass"), ("фарфор, роспись", "porcelain"), ("холст, масло", "paper"), ("чугун", "iron"),
         ("ahşap, boya", "wood"), ("pişmiş toprak", "terracotta"), ("mramor", "marble"), ("üveg", "glass"),
