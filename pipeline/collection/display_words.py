@@ -24,7 +24,7 @@ _CJK = re.compile("[\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7af]")
 @dataclass(frozen=True, slots=True)
 class _Words:
     words: Entries
-    meaning: Literal["yes", "no", "shown", "away", "store", "code", "gallery", "lender"]
+    meaning: Literal["yes", "no", "shown", "away", "store", "code", "gallery", "lender", "none"]
 
 
 @cache
@@ -63,6 +63,17 @@ def flag_of(text: str, *, display: bool = False) -> bool | None:
     if folded in meant["shown"]:
         return True
     return False if says_away(text) else None
+
+
+def tells_nothing(text: str) -> bool:
+    """Say whether a text tells that there is nothing, or that nobody knows: a dash, "none", "n/a", "keine".
+
+    Parameters
+    ----------
+    text : str
+        Of a cell that is not empty.
+    """
+    return not any(map(str.isalnum, text)) or _folded(text) in _meant()["none"]
 
 
 def says_flags(texts: Sequence[str]) -> bool:

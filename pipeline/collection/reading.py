@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from pipeline.collection.cells import Cells
 from pipeline.collection.consistency import contradictions
+from pipeline.collection.display_words import flag_of, tells_nothing
 from pipeline.collection.errors import CollectionError, NoRowsError
 from pipeline.collection.image_names import first_of, of_pattern
 from pipeline.collection.limits import STANDARD, Limits, Meter
@@ -478,7 +479,9 @@ def _read(cells: Cells, field: str, column: ColumnMap, texts: Sequence[str]) -> 
 
 def _text(cells: Cells, field: str, column: ColumnMap, texts: Sequence[str]) -> str:
     # An object number is never cut: two that begin alike would become one.
-    return cells.text(field, column, texts, limit=RECORD_LIMIT if field == "object_number" else TEXT_LIMIT)
+    text = cells.text(field, column, texts, limit=RECORD_LIMIT if field == "object_number" else TEXT_LIMIT)
+    # A word for none is no isolator that an object stands on.
+    return "" if field == "isolator" and (tells_nothing(text) or flag_of(text) is False) else text
 
 
 _READ: dict[str, Callable[[Cells, str, ColumnMap, Sequence[str]], Any]] = {

@@ -452,3 +452,12 @@ def test_a_text_from_which_nothing_is_read_is_named(text: str, told: str | None,
     content = f'number,location,title,height,mass,size\n1,Hall,Cup,,,"{text}"\n'
     (item,) = read(content, MAPPING + '[dimensions]\ncolumns = ["size"]\n').items
     assert [p.message for p in item.problems if p.field == "dimensions"] == ([] if told is None else [told])
+
+
+@pytest.mark.parametrize("said", ["none", "No", "-", "keine", "aucun", "нет", "なし", "0", "n/a"])
+def test_a_word_for_none_is_no_isolator(said: str, tmp_path: Path) -> None:
+    """What stands on an isolator that nobody described is not assessed: an object without one is."""
+    file = tmp_path / "export.csv"
+    file.write_text(f"object_number,gallery,title,isolator\n1,G,Vase,{said}\n2,G,Vase,LoadPoint 4\n", encoding="utf-8")
+    first, second = read_items(file, load_mapping("kouros")).items
+    assert (first.isolator, second.isolator) == ("", "LoadPoint 4")

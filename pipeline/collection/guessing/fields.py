@@ -9,7 +9,7 @@ from statistics import median
 
 import tomlkit
 
-from pipeline.collection.display_words import flag_of, says_away, says_flags
+from pipeline.collection.display_words import flag_of, says_away, says_flags, tells_nothing
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import NUMBER, Column
 from pipeline.collection.guessing.names import bare, named, unit_in
@@ -30,9 +30,6 @@ USUAL_M = 1.5
 
 MOST_WORDS = 30
 """Different texts that a column of flags has at most."""
-
-_NOT_KNOWN = ("n/a", "na", "none", "unknown", "not known", "unk", "tbd", "nicht bekannt", "inconnu", "sconosciuto")
-"""What people write for a size that nobody knows."""
 
 _ADDED = {("ft", "in"): 12.0, ("lb", "oz"): 16.0}
 """A greater and a lesser unit -> of the lesser in one of the greater."""
@@ -360,9 +357,7 @@ class Fields:
     def _by_hand(self, column: Column, unit: str) -> tomlkit.items.Table:
         entry = tomlkit.table()
         entry["column"], entry["unit"], entry["by_hand"] = column.name, unit, True
-        blanks = [text for text in column.distinct if not any(map(str.isalnum, text))] + [
-            text for text in column.distinct if text.casefold() in _NOT_KNOWN
-        ]
+        blanks = [text for text in column.distinct if tells_nothing(text)]
         if blanks:
             entry["missing"] = blanks
         self.doubts.append(f"column {column.name!r} is read as written by hand: fractions, inch marks, {unit} else")
