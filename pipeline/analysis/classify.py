@@ -34,6 +34,8 @@ from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectCl
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
 
+FIXED = "fixed-post:"
+"""How the reason of a class begins by whose rule a thing stands fixed in a footing."""
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
 
@@ -362,13 +364,14 @@ def furniture_kind(
     house: HouseRules | None = None,
 ) -> Furniture:
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
-    _, row, said, _ = _known_of(item, rules, decided, house)
-    support = said.laid_over(item).support or row.support
+    taken, row, said, _ = _known_of(item, rules, decided, house)
+    support = _laid_over(item, taken.words, said).support or row.support
     return furniture_of(item, row.name, support, said).furniture
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
-    stands = house.laid_over(item)
+    recorded = house.laid_over(item).support is not None
+    stands = _laid_over(item, words, house)
     support = stands.support or row.support
     mount = mount_of(stands, row, house)
     models = _tried(stands, row, None if mount is None else mount.row.models)
@@ -388,11 +391,18 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     hanging = None if builder.hanging is None else builder.hanging.known
     if mount is not None and mount.note:
         assumptions.insert(0, mount.note)
-    elif stands.support is None:
+    elif not recorded:
         assumptions.insert(0, f"{say.SUPPORT(support=support.value, told=row.told)}; {say.NOT_RECORDED()}")
     told = tuple(dict.fromkeys(assumptions))
     scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
+
+
+def _laid_over(item: Item, words: str, house: HouseEffect) -> Item:
+    """Return an object as its record and house rules say that it stands, a post of the open air as made fast."""
+    stands = house.laid_over(item)
+    fixed = stands.support is None and words.startswith(FIXED)
+    return replace(stands, support=Support.FASTENED) if fixed else stands
 
 
 def _tried(item: Item, row: ObjectClass, as_mounted: tuple[str, ...] | None = None) -> tuple[str, ...]:

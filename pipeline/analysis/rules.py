@@ -66,6 +66,10 @@ PICTURES = ("framed",)
 """Classes of what hangs flat whatever its title says."""
 FORMATS = ("screen", "handscroll")
 """Rules of pictures that do not hang: a title that names one says what the thing is, not what it shows."""
+LIGHTS = ("candlestick", "chandelier")
+"""Rules of lights that stand, among which a bare lamp is, and of those that hang."""
+ANY_LIGHT = frozenset({"lamp", "light", "lampe", "lampada", "lampara", "lampa", "luminaire", "leuchte", "leuchter"})
+"""Words that name a light of any kind, folded."""
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
 _STEM = 2
@@ -385,12 +389,27 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
     title = _named(item, item.title, kinds, of)
+    if name is not None and title is not None and _narrows(title, name):
+        name = title
     # What is painted, drawn or printed is flat, whatever its title says that it shows, but for its own format.
     flat = made is not None and made.rule.object_class in PICTURES
     speaks = title if not flat or (title is not None and title.rule.name in FORMATS) else None
     found = [one for one in (name or speaks, classed, made) if one is not None]
     decided = min(found, key=lambda one: one.rule.position, default=RuleMatch(of.rules[-1]))
     return Readings(decided, decided.rule.name in of.own, name, classed, made, title)
+
+
+def _narrows(title: RuleMatch, name: RuleMatch) -> bool:
+    """Whether a title names a kind of what the object name says: a Kronleuchter is a Leuchter, and no candlestick.
+
+    Where the name is of a light in general, a title that names one which hangs is of that kind whatever its words are.
+    """
+    if {title.rule.object_class, name.rule.object_class} & set(PICTURES):
+        return False
+    kind, thing = title.word.removeprefix("*"), name.word.removeprefix("*")
+    hangs = (name.rule.name, title.rule.name) == LIGHTS and thing in ANY_LIGHT
+    longer = kind != thing and bool(thing) and (kind.endswith(thing) or kind.startswith(f"{thing} "))
+    return hangs or longer
 
 
 def _wordless(item: Item, kinds: frozenset[str], of: RuleTable) -> tuple[RuleMatch | None, RuleMatch | None]:

@@ -360,6 +360,7 @@ class RowReader:
         self._spread_diameter(values, cells)
         if self._texts and self._mapping.dimensions is not None:
             self._fill(values, cells, self._mapping.dimensions, [row.cells[i] for i in self._texts])
+        self.audit.lost(row, cells)
         self._shows = self.audit.look(row, values, cells)
         found = contradictions(values)
         self.audit.weigh(self._shows, row, values, [problem for _, problem in found])
@@ -377,7 +378,7 @@ class RowReader:
         elif len(number) > NUMBER_LIMIT:
             message = f"an object number of {len(number)} characters, more than {NUMBER_LIMIT}"
             self._reject(row, "object_number", message, "see whether the cells of this row were shifted")
-        elif " " in number and is_dimension(number):
+        elif " " in number and is_dimension(number) and self._is_line(row):
             message = f"the object number {number!r} is a dimension: a line inside a cell of the row above became a row"
             self._reject(
                 row, "object_number", message, "export again with quotation marks around texts of several lines"

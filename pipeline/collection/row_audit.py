@@ -8,6 +8,7 @@ from typing import Any
 
 from pipeline.collection.cells import Cells
 from pipeline.collection.display_words import says_away
+from pipeline.collection.guessing.names import is_length
 from pipeline.collection.mapping import ColumnMap, Mapping
 from pipeline.collection.record import plausible
 from pipeline.collection.source_audit import SIDES, place_key, see_number, see_pairs, unit_columns, unit_named
@@ -40,6 +41,9 @@ class RowAudit:
         self._galleries = {name.strip().casefold() for name in mapping.display.on_display}
         self._stores = {name.strip().casefold() for name in mapping.display.not_on_display}
         self.rows: dict[str, list[str]] = {}
+        taken = {name for column in mapping.columns.values() for name in (*column.sources, column.unit_column)}
+        taken.update(() if mapping.dimensions is None else mapping.dimensions.columns)
+        self._lengths = [(at, name) for at, name in enumerate(header) if name not in taken and is_length(name)]
 
     def column_of(self, field: str, column: ColumnMap, row: Row, cells: Cells) -> ColumnMap:
         """Return the column of a field with the unit that this row's own column of units names."""
@@ -54,6 +58,16 @@ class RowAudit:
         if (field, unit) not in self._in_unit:
             self._in_unit[field, unit] = column.model_copy(update={"unit": unit})
         return self._in_unit[field, unit]
+
+    def lost(self, row: Row, cells: Cells) -> None:
+        """Note a length for which the mapping has no field, where no size of the row is the same number."""
+        sizes = {row.cells[at].strip() for at in self._places.values()}
+        for at, name in self._lengths:
+            text = row.cells[at].strip()
+            if text and text not in sizes and any(c in "123456789" for c in text):
+                message = f"column {name!r}: the length {text[:40]!r} is in no field"
+                remedy = "see whether it is the height, width or depth of this object, and name the column in the mapping"
+                cells.problems.append(Problem("dimensions", message, remedy))
 
     def look(self, row: Row, values: Mapped[str, Any], cells: Cells) -> Evidence:
         """Return what a row shows of its source, before any of its values is refused."""

@@ -324,7 +324,7 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
     called = [c for c in free if (what := named(c.name)) is not None and what.field == TEXTS and c.sized > 0.2]
     words = [c for c in free if c.name.rpartition(".")[2] == IN_WORDS and c.filled]
     if called or words:
-        return called + words
+        return called or words
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
     best = max(texts, key=lambda c: c.dimensional, default=None)
     return [best] if best is not None and best.dimensional > 0.6 else []
