@@ -378,7 +378,7 @@ class RowReader:
         elif len(number) > NUMBER_LIMIT:
             message = f"an object number of {len(number)} characters, more than {NUMBER_LIMIT}"
             self._reject(row, "object_number", message, "see whether the cells of this row were shifted")
-        elif " " in number and is_dimension(number) and self._is_line(row):
+        elif " " in number and is_dimension(number):
             message = f"the object number {number!r} is a dimension: a line inside a cell of the row above became a row"
             self._reject(
                 row, "object_number", message, "export again with quotation marks around texts of several lines"
