@@ -72,7 +72,9 @@ class RowAudit:
             text = row.cells[at].strip()
             if text and text not in sizes and any(c in "123456789" for c in text):
                 message = f"column {name!r}: its {text[:40]!r} is in no field"
-                remedy = "see whether it is the height, width or depth of this object, and name the column in the mapping"
+                remedy = (
+                    "see whether it is the height, width or depth of this object, and name the column in the mapping"
+                )
                 cells.problems.append(Problem("dimensions", message, remedy))
 
     def look(self, row: Row, values: Mapped[str, Any], cells: Cells) -> Evidence:

@@ -24,7 +24,8 @@ _CONVENTION = "the order is taken as height x width x depth, the museums' conven
 
 _GR = re.compile(r"\bgr\.?\s*[:=-]?\s*\Z", re.IGNORECASE)
 _SLASHED = re.compile(
-    r"(?P<legend>\b[^\W\d_]+\.?(?: ?/ ?[^\W\d_]+\.?){2}) ?[:=]? ?\d+(?:[.,]\d+)?(?: ?[/x×] ?\d+(?:[.,]\d+)?){2}(?![/\d])"
+    r"(?P<legend>\b[^\W\d_]+\.?(?: ?/ ?[^\W\d_]+\.?){2}) ?[:=]? ?"
+    r"\d+(?:[.,]\d+)?(?: ?[/x×] ?\d+(?:[.,]\d+)?){2}(?![/\d])"
 )
 """Three words and three numbers, parted by strokes: Höhe/Breite/Tiefe: 11,5/27/16 cm."""
 
