@@ -87,6 +87,8 @@ def test_an_export_is_read_by_the_guess_alone(language: str, tmp_path: Path) -> 
     ("text", "sizes"),
     [
         ("Höhe/Breite/Tiefe: 11,5/27/16 cm", (0.115, 0.27, 0.16)),
+        ("Höhe/Breite: 21/13 cm", (0.21, 0.13, None)),
+        ("height/width 3 1/2 x 4 in", (0.0889, 0.1016, None)),
         ("Alto/Ancho/Fondo = 35 x 20 x 10 cm", (0.35, 0.2, 0.1)),
         ("wysokość w ramie: 95 cm; szerokość w ramie: 122 cm", (0.95, 1.22, None)),
         ("Î: 21 cm", (0.21, None, None)),

@@ -22,12 +22,19 @@ _ORDERS = {"": ("height", "width", "depth"), "length": ("width", "height", "dept
 _CONVENTION = "the order is taken as height x width x depth, the museums' convention; it is not written"
 
 
+_FRACTION = re.compile(r"1/2|[12]/3|[13]/4|[1357]/8|\d?[13579]/(?:16|32)")
+"""As inches are parted."""
 _GR = re.compile(r"\bgr\.?\s*[:=-]?\s*\Z", re.IGNORECASE)
 _SLASHED = re.compile(
-    r"(?P<legend>\b[^\W\d_]+\.?(?: ?/ ?[^\W\d_]+\.?){2}) ?[:=]? ?"
-    r"\d+(?:[.,]\d+)?(?: ?[/x×] ?\d+(?:[.,]\d+)?){2}(?![/\d])"
+    r"(?P<legend>\b[^\W\d_]+\.?(?: ?/ ?[^\W\d_]+\.?){1,2}) ?[:=]? ?"
+    r"(?P<run>\d+(?:[.,]\d+)?(?: ?[/x×] ?\d+(?:[.,]\d+)?){1,2})(?![/\d])"
 )
-"""Three words and three numbers, parted by strokes: Höhe/Breite/Tiefe: 11,5/27/16 cm."""
+"""Words and as many numbers, parted by strokes: Höhe/Breite/Tiefe: 11,5/27/16 cm."""
+
+_LEGEND = re.compile(
+    r"(?P<legend>\b[^\W\d_]+\.?(?: ?/ ?[^\W\d_]+\.?){1,2})(?= ?[:=]? ?\d[\d ./,]{0,12}(?:[a-z]{1,2}\.? ?)?[x×] ?\d)"
+)
+"""The same before numbers that joins part already: height/width 3 1/2 x 4 in."""
 
 
 def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", language: str = "") -> Dimensions:
@@ -70,7 +77,7 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
         raise InputError(f'decimal must be "." or ",", not {decimal!r}')
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
-    head = _SLASHED.sub(_with_joins, text[:LONGEST])
+    head = _LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, text[:LONGEST]))
     decimal = _mark_of(head) or decimal
     told: list[DimensionNote] = []
     tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
@@ -113,7 +120,9 @@ def _with_joins(found: re.Match[str]) -> str:
     words = [word.strip(" .").casefold() for word in found["legend"].split("/")]
     known = meanings()
     sides = [known.get(word, ("", ""))[0] == "dimension" or word in label_words() for word in words]
-    return found[0].replace("/", "×") if all(sides) else found[0]
+    run = found.groupdict().get("run")
+    as_many = run is None or (len(re.findall(r"[/x×]", run)) + 1 == len(words) and not _FRACTION.fullmatch(run))
+    return found[0].replace("/", "×") if as_many and all(sides) else found[0]
 
 
 def _whole(groups: list[Group]) -> list[Group]:
