@@ -408,7 +408,8 @@ def _narrows(title: RuleMatch, name: RuleMatch) -> bool:
         return False
     kind, thing = title.word.removeprefix("*"), name.word.removeprefix("*")
     hangs = (name.rule.name, title.rule.name) == LIGHTS and thing in ANY_LIGHT
-    longer = kind != thing and bool(thing) and (kind.endswith(thing) or kind.startswith(f"{thing} "))
+    of = f"{thing} de "  # a copa con tapa is the same copa
+    longer = kind != thing and bool(thing) and (kind.endswith(thing) or kind.startswith(of))
     return hangs or longer
 
 
