@@ -70,6 +70,8 @@ LIGHTS = ("candlestick", "chandelier")
 """Rules of lights that stand, among which a bare lamp is, and of those that hang."""
 ANY_LIGHT = frozenset({"lamp", "light", "lampe", "lampada", "lampara", "lampa", "luminaire", "leuchte", "leuchter"})
 """Words that name a light of any kind, folded."""
+LIDS = frozenset({"lid", "cover", "deckel", "couvercle", "coperchio", "tapa", "deksel", "capac", "tampa"})
+"""Words of what a thing may have and be no other kind for it, folded."""
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
 _STEM = 2
@@ -408,8 +410,8 @@ def _narrows(title: RuleMatch, name: RuleMatch) -> bool:
         return False
     kind, thing = title.word.removeprefix("*"), name.word.removeprefix("*")
     hangs = (name.rule.name, title.rule.name) == LIGHTS and thing in ANY_LIGHT
-    of = f"{thing} de "  # a copa con tapa is the same copa
-    longer = kind != thing and bool(thing) and (kind.endswith(thing) or kind.startswith(of))
+    lidded = kind.rpartition(" ")[2] in LIDS  # a copa con tapa is a copa still, where a pahar cu picior is a goblet
+    longer = kind != thing and bool(thing) and (kind.endswith(thing) or (kind.startswith(f"{thing} ") and not lidded))
     return hangs or longer
 
 
