@@ -19,7 +19,7 @@ from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.masses import mass_of, solid_mass
 from pipeline.analysis.mounts import MountGuess, mount_estimates, mount_of
 from pipeline.analysis.object_class import TakenClass, class_of
-from pipeline.analysis.rules import RuleTable
+from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
 from pipeline.analysis.told import as_told, too_slender
@@ -35,6 +35,9 @@ from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectCl
 
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
+
+FIXED = "fixed-post:"
+"""How the reason of a class begins by whose rule a thing stands fixed in a footing."""
 
 
 def material_of(item: Item, values: AssumedValues | None = None) -> Material:
@@ -361,14 +364,15 @@ def furniture_kind(
     house: HouseRules | None = None,
 ) -> Furniture:
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
-    _, row, said, _ = _known_of(item, rules, decided, house)
-    support = as_told(said.laid_over(item), row).support or row.support
+    taken, row, said, _ = _known_of(item, rules, decided, house)
+    support = _held(as_told(said.laid_over(item), row), taken.words).support or row.support
     return furniture_of(item, row.name, support, said).furniture
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
     laid = house.laid_over(item)
-    stands = as_told(laid, row)
+    by_record = as_told(laid, row)
+    stands = _held(by_record, words)
     support = stands.support or row.support
     mount = mount_of(stands, row, house)
     models = _tried(stands, row, None if mount is None else mount.row.models)
@@ -389,15 +393,21 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     hanging = None if builder.hanging is None else builder.hanging.known
-    if stands.support is not laid.support:
+    if by_record.support is not laid.support:
         assumptions.insert(0, say.SUPPORT_TOLD(support=support.value))
     elif mount is not None and mount.note:
         assumptions.insert(0, mount.note)
-    elif stands.support is None:
+    elif by_record.support is None:
         assumptions.insert(0, f"{say.SUPPORT(support=support.value, told=row.told)}; {say.NOT_RECORDED()}")
     told = tuple(dict.fromkeys(assumptions))
     scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
+
+
+def _held(item: Item, words: str) -> Item:
+    """Return what is known of how an object stands, a post of the open air as made fast where nothing tells."""
+    fixed = item.support is None and words.startswith(FIXED)
+    return replace(item, support=Support.FASTENED) if fixed else item
 
 
 def _tried(item: Item, row: ObjectClass, as_mounted: tuple[str, ...] | None = None) -> tuple[str, ...]:

@@ -23,7 +23,8 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.analysis.rules import PICTURES, Readings, RuleMatch, fold, stuff, words_of
+from pipeline.analysis.rule_table import RuleMatch, fold, stuff, words_of
+from pipeline.analysis.rules import PICTURES, Readings
 from pipeline.analysis.shapes import SHAPES, faceless
 from pipeline.collection.dimensions.lexicon import words_for
 from pipeline.records import Item

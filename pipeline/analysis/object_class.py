@@ -4,7 +4,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of, taken_of
-from pipeline.analysis.rules import Readings, RuleTable, readings
+from pipeline.analysis.rule_table import RuleTable
+from pipeline.analysis.rules import Readings, readings
 from pipeline.records import Item
 
 

@@ -22,6 +22,8 @@ from pipeline.quantities import LENGTHS
 from pipeline.records import ContactPolygon, Origin, Problem, Provenance
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
+_NOTED = re.compile(r"\s*(?P<number>[^()]*\d[^()]*?)\s*(?P<note>\([^()\d]*[^\W\d_]{2}[^()\d]*\))\s*")
+"""A number with a note in brackets behind it that has no number of its own: 5,3 (com pires)."""
 _INFINITE = re.compile(r"[+-]?inf(inity)?", re.IGNORECASE)
 _LONGEST_NUMBER = 40
 _LONGEST_WRITTEN = 200
@@ -80,6 +82,9 @@ class Cells:
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
+        noted = _NOTED.fullmatch(text)
+        if noted is not None:
+            return self._with_note(name, column, noted["note"], [noted["number"], *texts[1:]])
         if column.by_hand:
             return self._by_hand(name, column, text)
         if column.unit == WRITTEN:
@@ -297,6 +302,14 @@ class Cells:
             return None
         self.provenance.append(Provenance(name, Origin.MEASURED, " ".join(written)))
         return total
+
+    def _with_note(self, name: str, column: ColumnMap, note: str, texts: Sequence[str]) -> float | None:
+        """Return the number in front of a note, with a doubt: it may say that the number is not of the object alone."""
+        value = self.number(name, column, texts)
+        if value is not None:
+            message = f"behind the number stands {_show(note)}; the number is taken"
+            self._note(name, column, message, "see whether it is that of the whole object, and move the note elsewhere")
+        return value
 
     def _written(self, name: str, column: ColumnMap, text: str) -> float | None:
         found = of_cell(text, plausible()[name].unit, self.decimal)

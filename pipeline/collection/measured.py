@@ -53,6 +53,8 @@ def _spelled() -> re.Pattern[str]:
     return re.compile(rf"(?i)\b(?:{_NUMERALS}){more}[\s-]+(?:{units})\b")
 
 
+_SHELF_MARK = re.compile(r"\s*[^\W\d_a-z]{1,4}\.?\s\d[\d.,/-]*[a-z]?\s*")
+"""Capitals and a number, as inventories count: M 45 is no 45 m."""
 _PART = "weight of a part"
 """How the reason of a weight begins that is not the whole object's."""
 
@@ -238,4 +240,4 @@ def _provenance(field: str, what: str, choice: Choice, read: Dimensions) -> Prov
 
 def is_dimension(text: str) -> bool:
     """Whether a text that should name an object is a dimension: a line of another cell that became a row."""
-    return any(part.unit_text for part in parse(text).parts)
+    return not _SHELF_MARK.fullmatch(text) and any(part.unit_text for part in parse(text).parts)

@@ -361,6 +361,7 @@ class RowReader:
         self._spread_diameter(values, cells)
         if self._texts and self._mapping.dimensions is not None:
             self._fill(values, cells, self._mapping.dimensions, [row.cells[i] for i in self._texts])
+        self.audit.lost(row, cells)
         self._shows = self.audit.look(row, values, cells)
         found = contradictions(values)
         self.audit.weigh(self._shows, row, values, [problem for _, problem in found])

@@ -8,15 +8,22 @@ from typing import Any
 
 from pipeline.collection.cells import Cells
 from pipeline.collection.display_words import says_away
+from pipeline.collection.guessing.names import is_length
 from pipeline.collection.mapping import ColumnMap, Mapping
 from pipeline.collection.record import plausible
 from pipeline.collection.source_audit import SIDES, place_key, see_number, see_pairs, unit_columns, unit_named
+from pipeline.collection.sources.measurement_terms import kind_of
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.unit_audit import FILL, SOLID, Evidence
 from pipeline.records import Problem
 
 EXAMPLES = 3
 """Rows that are named of each kind."""
+
+
+def _has_no_field(name: str) -> bool:
+    """Whether a column is of lengths or thicknesses, of which the record has none of its own."""
+    return is_length(name) or kind_of(name.rpartition(".")[2]) in ("length", "thickness")
 
 
 class RowAudit:
@@ -40,6 +47,9 @@ class RowAudit:
         self._galleries = {name.strip().casefold() for name in mapping.display.on_display}
         self._stores = {name.strip().casefold() for name in mapping.display.not_on_display}
         self.rows: dict[str, list[str]] = {}
+        taken = {name for column in mapping.columns.values() for name in (*column.sources, column.unit_column)}
+        taken.update(() if mapping.dimensions is None else mapping.dimensions.columns)
+        self._lengths = [(at, name) for at, name in enumerate(header) if name not in taken and _has_no_field(name)]
 
     def column_of(self, field: str, column: ColumnMap, row: Row, cells: Cells) -> ColumnMap:
         """Return the column of a field with the unit that this row's own column of units names."""
@@ -54,6 +64,18 @@ class RowAudit:
         if (field, unit) not in self._in_unit:
             self._in_unit[field, unit] = column.model_copy(update={"unit": unit})
         return self._in_unit[field, unit]
+
+    def lost(self, row: Row, cells: Cells) -> None:
+        """Note a length for which the mapping has no field, where no size of the row is the same number."""
+        sizes = {row.cells[at].strip() for at in self._places.values()}
+        for at, name in self._lengths:
+            text = row.cells[at].strip()
+            if text and text not in sizes and any(c in "123456789" for c in text):
+                message = f"column {name!r}: its {text[:40]!r} is in no field"
+                remedy = (
+                    "see whether it is the height, width or depth of this object, and name the column in the mapping"
+                )
+                cells.problems.append(Problem("dimensions", message, remedy))
 
     def look(self, row: Row, values: Mapped[str, Any], cells: Cells) -> Evidence:
         """Return what a row shows of its source, before any of its values is refused."""

@@ -19,7 +19,7 @@ from pipeline.analysis.likelihood.classes import computed, scenes_by_class
 from pipeline.analysis.likelihood.sampling import ACTS
 from pipeline.analysis.likelihood.stripes import sampled_fragilities
 from pipeline.analysis.response_charts import ChartCache
-from pipeline.analysis.rules import RuleTable
+from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.survey import measurement_requests, telling_requests
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.record import INDIVIDUAL

@@ -11,7 +11,7 @@ from pipeline.analysis.context import Context, remembered
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.response_charts.histories import CommonHistories
-from pipeline.analysis.rules import RuleTable
+from pipeline.analysis.rule_table import RuleTable
 from pipeline.cache import Cache, key_of
 from pipeline.execute import Threads
 from pipeline.mitigate import MeasureCatalogue

@@ -13,7 +13,7 @@ from pipeline.analysis.classify import house_effect
 from pipeline.analysis.faults import apart
 from pipeline.analysis.house.effect import HouseEffect
 from pipeline.analysis.house.matching import HouseRules
-from pipeline.analysis.rules import RuleTable
+from pipeline.analysis.rule_table import RuleTable
 from pipeline.cache import HOUSE, Cache, CacheEntry, key_of
 from pipeline.collection.listing import Listed, Listing
 from pipeline.collection.object_index import ObjectIndex

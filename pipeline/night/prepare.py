@@ -14,7 +14,7 @@ from pipeline.analysis.faults import sound, without_failing
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.response_charts.grouping import group_name, groups
-from pipeline.analysis.rules import RuleTable
+from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.stakes import VALUE_PER_C
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.listing import Listing

@@ -16,7 +16,7 @@ from pipeline.resources import BUNDLED, resource, sweep
 if TYPE_CHECKING:
     from pipeline.analysis.house.matching import HouseRules
     from pipeline.analysis.response_charts import ChartCache
-    from pipeline.analysis.rules import RuleTable
+    from pipeline.analysis.rule_table import RuleTable
     from pipeline.collection.database import Database
     from pipeline.collection.object_index import ObjectIndex
     from pipeline.mitigate import MeasureCatalogue
@@ -69,7 +69,7 @@ class Workspace:
         TableError
             For one that cannot be used.
         """
-        from pipeline.analysis.rules import with_own
+        from pipeline.analysis.rule_table import with_own
 
         path = self._own(self.settings.collection.rules, "[collection] rules names the file of your own rules")
         own = path is not None or any(self.settings.tables.model_dump().values())

@@ -11,7 +11,8 @@ from pipeline.analysis.findings import findings
 from pipeline.analysis.furniture import itself, loose
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.refinement import FidelitySearch, examine
-from pipeline.analysis.rules import RuleTable, readings
+from pipeline.analysis.rule_table import RuleTable
+from pipeline.analysis.rules import readings
 from pipeline.analysis.stakes import Worth, counting, worth_of
 from pipeline.analysis.verdicts import LevelMotions, capacity_of
 from pipeline.collection.inventory import read_inventory

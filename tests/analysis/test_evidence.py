@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.evidence import IDENTIFIED, chances_of, is_alone, weights
-from pipeline.analysis.rules import readings, with_own
+from pipeline.analysis.rule_table import with_own
+from pipeline.analysis.rules import readings
 from pipeline.records import Item
 from pipeline.tables import table
 from pipeline.verification.class_fit import CLASSES, Labelled, fit, labelled_of, left_out, probabilities, tabled

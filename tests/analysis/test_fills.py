@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.rules import with_own
+from pipeline.analysis.rule_table import with_own
 from pipeline.records import Item
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed, assumed_with

@@ -17,7 +17,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.flexibility import Body, cantilever_frequency, spread
 from pipeline.analysis.plan import plan
 from pipeline.analysis.response import respond
-from pipeline.analysis.rules import with_own
+from pipeline.analysis.rule_table import with_own
 from pipeline.analysis.section import Section
 from pipeline.execute import Threads
 from pipeline.mitigate.measures.base import held

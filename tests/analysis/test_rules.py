@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.rules import RuleMatch, fold, identifiers, read_rules, readings, rule_for, rules, with_own
+from pipeline.analysis.rule_table import RuleMatch, fold, identifiers, read_rules, rules, with_own
+from pipeline.analysis.rules import readings, rule_for
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection

@@ -9,7 +9,7 @@ from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
 from pipeline.analysis.furniture import filter_of
-from pipeline.analysis.rules import with_own
+from pipeline.analysis.rule_table import with_own
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate.catalogue import own_catalogue

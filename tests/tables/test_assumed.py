@@ -10,7 +10,7 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
 from pipeline.analysis.furniture import filter_of
-from pipeline.analysis.rules import RuleTable, with_own
+from pipeline.analysis.rule_table import RuleTable, with_own
 from pipeline.execute import Threads
 from pipeline.mitigate import measure_catalogue
 from pipeline.mitigate.measures.surfaces import Surface

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.analysis.rules import with_own
+from pipeline.analysis.rule_table import with_own
 from pipeline.resources import SMALL
 from pipeline.tables import TableError, read_table
 from pipeline.tables.rows import Entries, Number, Optional, checked, once

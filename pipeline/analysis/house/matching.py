@@ -12,7 +12,7 @@ from math import isclose, isnan, nan
 
 from pipeline.analysis.house.effect import HouseEffect, HouseStatement
 from pipeline.analysis.house.rule import ABOVE, CRITERIA, QUANTITIES, SLOTS, STANDING, HouseRule, Span
-from pipeline.analysis.rules import stuff, words_of
+from pipeline.analysis.rule_table import stuff, words_of
 from pipeline.errors import InputError
 from pipeline.records import Furniture, Item, Mount, Support
 

@@ -11,7 +11,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.furniture import filter_of
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.plan import requirements
-from pipeline.analysis.rules import RuleTable
+from pipeline.analysis.rule_table import RuleTable
 from pipeline.records import Scene
 from pipeline.tables.assumed import assumed
 

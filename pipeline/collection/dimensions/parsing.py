@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from pipeline.collection.dimensions.labels import labelled
-from pipeline.collection.dimensions.lexicon import languages, units
+from pipeline.collection.dimensions.lexicon import label_words, languages, meanings, units
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.reader import Reader
 from pipeline.collection.dimensions.result import DimensionNote, DimensionPart, Dimensions
@@ -20,6 +20,21 @@ _SHOWN = re.compile(r"(?<![\d.,])\d+([.,])\d{1,2}(?![\d.,]|\s*/)")
 _POINTED = re.compile(r"\d{1,3}\.\d{3}")
 _ORDERS = {"": ("height", "width", "depth"), "length": ("width", "height", "depth")}
 _CONVENTION = "the order is taken as height x width x depth, the museums' convention; it is not written"
+
+
+_FRACTION = re.compile(r"1/2|[12]/3|[13]/4|[1357]/8|\d?[13579]/(?:16|32)")
+"""As inches are parted."""
+_GR = re.compile(r"\bgr\.?\s*[:=-]?\s*\Z", re.IGNORECASE)
+_SLASHED = re.compile(
+    r"(?P<legend>\b[^\W\d_]+\.?(?: ?/ ?[^\W\d_]+\.?){1,2}) ?[:=]? ?"
+    r"(?P<run>\d+(?:[.,]\d+)?(?: ?[/x×] ?\d+(?:[.,]\d+)?){1,2})(?![/\d])"
+)
+"""Words and as many numbers, parted by strokes: Höhe/Breite/Tiefe: 11,5/27/16 cm."""
+
+_LEGEND = re.compile(
+    r"(?P<legend>\b[^\W\d_]+\.?(?: ?/ ?[^\W\d_]+\.?){1,2})(?= ?[:=]? ?\d[\d ./,]{0,12}(?:[a-z]{1,2}\.? ?)?[x×] ?\d)"
+)
+"""The same before numbers that joins part already: height/width 3 1/2 x 4 in."""
 
 
 def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", language: str = "") -> Dimensions:
@@ -62,7 +77,7 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
         raise InputError(f'decimal must be "." or ",", not {decimal!r}')
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
-    head = text[:LONGEST]
+    head = _LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, text[:LONGEST]))
     decimal = _mark_of(head) or decimal
     told: list[DimensionNote] = []
     tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
@@ -89,7 +104,7 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
             elif q.unit is None:
                 notes.append(DimensionNote("missing_unit", "no unit is written, so there is no value", q.start, q.end))
     for group in groups:
-        _weighed(group, notes)
+        _weighed(group, head, notes)
         for q in group.quantities:
             if decimal == "," and _POINTED.fullmatch(q.word):
                 message = f"{q.word} is read as {q.num / q.den:.10g}, its point as a mark of thousands"
@@ -98,6 +113,16 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
         _part(group, number, q) for number, group in enumerate(_ordered(groups, notes)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
+
+
+def _with_joins(found: re.Match[str]) -> str:
+    """Return "Höhe/Breite/Tiefe: 11/27/16" as a legend with joins, of as many characters, where each word is a side."""
+    words = [word.strip(" .").casefold() for word in found["legend"].split("/")]
+    known = meanings()
+    sides = [known.get(word, ("", ""))[0] == "dimension" or word in label_words() for word in words]
+    run = found.groupdict().get("run")
+    as_many = run is None or (len(re.findall(r"[/x×]", run)) + 1 == len(words) and not _FRACTION.fullmatch(run))
+    return found[0].replace("/", "×") if as_many and all(sides) else found[0]
 
 
 def _whole(groups: list[Group]) -> list[Group]:
@@ -147,13 +172,17 @@ def _share_units(group: Group, notes: list[DimensionNote]) -> None:
             notes.append(DimensionNote("unit", f"the unit is that of the next number, {unit.name}", q.start, q.end))
 
 
-def _weighed(group: Group, notes: list[DimensionNote]) -> None:
-    """Refuse a weight in centimetres and a height in kilograms: the unit is believed, the label is not."""
+def _weighed(group: Group, text: str, notes: list[DimensionNote]) -> None:
+    """Refuse a weight in centimetres and a height in kilograms: the unit is believed, the label is not.
+
+    A Romanian "Gr." is both: greutate in grams, grosime in centimetres.
+    """
     for q in group.quantities:
         if (q.dimension == "weight" and q.kind == "length") or (q.kind == "mass" and q.dimension not in ("", "weight")):
             message = f"{q.dimension} in {q.unit.name if q.unit else ''}: the unit is believed, and not the label"
             notes.append(DimensionNote("ambiguous", message, q.start, q.end))
-            q.dimension = "weight" if q.kind == "mass" else "unlabelled"
+            thick = q.kind == "length" and _GR.search(text[: q.start])
+            q.dimension = "weight" if q.kind == "mass" else "thickness" if thick else "unlabelled"
 
 
 def _ordered(groups: list[Group], notes: list[DimensionNote]) -> list[Group]:

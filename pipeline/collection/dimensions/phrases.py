@@ -23,6 +23,9 @@ from pipeline.collection.dimensions.tokens import (
 
 _GLUE = frozenset(("", "-", ".", "&", "'", "’", "/", "-.", "+"))
 
+_IN_POLISH = frozenset({"ramie", "oprawie"})
+"""Words behind a Polish "w" that is no width: "w ramie", in its frame."""
+
 
 @dataclass(slots=True)
 class Phrase:
@@ -109,7 +112,9 @@ def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
     for at in indices:
         token = tokens[at]
         kind, meaning = token.meaning or ("", "")
-        if token.type == DIMENSION:
+        if token.word == "w" and at + 1 in indices and tokens[at + 1].word in _IN_POLISH:
+            pass
+        elif token.type == DIMENSION:
             if is_label_letter(tokens, at, text):
                 kept.append((token.word, token))
                 out.known = False

@@ -15,6 +15,7 @@ from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bar
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
+from pipeline.collection.sources.measurements import IN_WORDS, OTHER
 from pipeline.errors import InputError
 
 NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
@@ -319,10 +320,11 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
         In the order of the source.
     """
     taken = {id(column) for column in used}
-    free = [column for column in columns if id(column) not in taken and column.name != "other_measurements"]
+    free = [column for column in columns if id(column) not in taken and column.name != OTHER]
     called = [c for c in free if (what := named(c.name)) is not None and what.field == TEXTS and c.sized > 0.2]
-    if called:
-        return called
+    words = [c for c in free if c.name.rpartition(".")[2] == IN_WORDS and c.filled]
+    if called or words:
+        return called or words
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
     best = max(texts, key=lambda c: c.dimensional, default=None)
     return [best] if best is not None and best.dimensional > 0.6 else []

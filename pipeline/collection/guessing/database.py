@@ -35,6 +35,7 @@ _OBJECTS = frozenset(
 _CURRENT = frozenset(
     {
         "current",
+        "curent",
         "actual",
         "actuel",
         "actuelle",
@@ -51,7 +52,20 @@ _USUAL = frozenset({"home", "normal", "usual", "permanent", "default"})
 _FLAGS = frozenset(f"is {word}" for word in _CURRENT) | _CURRENT | {"active", "iscurrent", "current location"}
 _NAMES = (*CALLED, "bezeichnung", "label", "description", "term", "title", "code")
 _SIZES = frozenset({"height_m", "width_m", "depth_m", "diameter_m", "length_m", "mass_kg", "dimensions"})
-_PLACES = ("place", "places", "spot", "position", "standplaats", "lieu", "luogo", "lugar", "yer", "miejsce")
+_PLACES = (
+    "loc",
+    "locuri",
+    "place",
+    "places",
+    "spot",
+    "position",
+    "standplaats",
+    "lieu",
+    "luogo",
+    "lugar",
+    "yer",
+    "miejsce",
+)
 """Names of tables of places that are no names of a column of places: a "place" of an object is where it is from."""
 
 _ENDS = frozenset(

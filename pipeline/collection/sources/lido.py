@@ -244,7 +244,8 @@ class _Record:
                         others.append(f"{said}: {text}" if said else text)
                     else:
                         cells[column] = text
-        cells["dimensions"] = _join(shown)
+        # Where nobody wrote a text, what no column takes is read as one.
+        cells["dimensions"] = _join(shown) or _join(others)
         cells["other_measurements"] = _join(others)
         return cells
 

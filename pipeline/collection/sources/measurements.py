@@ -20,7 +20,10 @@ MEASURED = tuple(f"{part} {kind}".strip() for part in PARTS for kind in KINDS)
 OTHER = "other_measurements"
 """Column of those of unknown kinds or parts, and of second values."""
 
-OF_MEASUREMENTS = (*MEASURED, OTHER)
+IN_WORDS = "measurements_in_words"
+"""Column of all of a record whose columns do not tell the whole, as one text: it is read as texts of dimensions are."""
+
+OF_MEASUREMENTS = (*MEASURED, OTHER, IN_WORDS)
 
 COLUMNS = (
     "object_number",
@@ -72,6 +75,8 @@ class Measurements:
         self._si: dict[str, float | None] = {}
         self._faults: dict[str, tuple[str, str]] = {}
         self._others: list[str] = []
+        self._words: list[str] = []
+        self._in_columns = True
 
     def add(self, kind: str, value: str, unit: str = "", part: str = "") -> None:
         """Take one measurement in the words of its record.
@@ -104,6 +109,12 @@ class Measurements:
             return
         named = unit_of(unit) or unit.strip() or (self._unit if kind != "weight" else None) or ""
         text = f"{value} {named}".strip()
+        # No field is for the sides of a frame; what is said of a base has columns of its own.
+        in_column = kind is not None and part is not None and (not part or (part == "base" and kind != "diameter"))
+        self._in_columns &= in_column
+        if not in_column or not part:
+            called = said if kind is None or part is None or kind_of(said) == kind else f"{part} {kind}".strip()
+            self._words.append(f"{called}: {text}" if called else text)
         if kind is None or part is None:
             self._others.append(f"{said}: {text}" if said else text)
             return
@@ -150,6 +161,8 @@ class Measurements:
                     found[free] = found[length]
         if self._others:
             found[OTHER] = "; ".join(self._others)
+        if not self._in_columns and not self._faults:
+            found[IN_WORDS] = "; ".join(dict.fromkeys(self._words))
         return found
 
     def faults(self, columns: Iterable[str]) -> Mapping[int, tuple[str, str]]:

@@ -71,6 +71,8 @@ def test_an_object_with_its_groups() -> None:
         "weight": "3.5 kg",
         "base height": "4 cm",
         "other_measurements": "Transportkiste height: 90 cm",
+        "measurements_in_words": "height: 25.2 cm; width: 16.7 cm; depth: 9 cm; "
+        "Transportkiste height: 90 cm; weight: 3.5 kg",
     }
     assert not row.faults
 

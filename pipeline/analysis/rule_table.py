@@ -1,0 +1,308 @@
+"""Rules by which an object's record names its class: tables/rules.csv, read from the top; the first that holds decides.
+
+What a row asks of a record, cell by cell (several entries of a cell are parted by `|`; an empty cell asks nothing):
+
+aat            : one of these Getty AAT identifiers is recorded: then classification and words are not asked for
+classification : the museum's classification, or a part of its object name, is one of these, in singular or plural
+words          : the naming word is one of these; `*statuette` also takes words that end so (Bronzestatuette)
+medium         : material or medium has one of these words; what an object stands on (a base) does not count;
+                 `=oil paint` is a medium of nothing else
+shape          : all of these measures hold (see `pipeline.analysis.shapes`)
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Annotated
+from unicodedata import combining, normalize
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationInfo
+
+from pipeline.analysis.shapes import SHAPES
+from pipeline.errors import InputError
+from pipeline.records import Item
+from pipeline.tables import Row, TableError, read_table, table
+from pipeline.tables.assumed import AssumedValues, assumed
+from pipeline.tables.rows import Entries, checked, once
+
+_IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")
+WORD = re.compile(r"[^\W\d_]+")
+BREAK = re.compile(
+    r"[,:;|()\[\]/\"]|\s(?:of|with|for|in|from|by|and|on|showing|depicting|mit|von|aus|und|fur|zum|zur|avec|de|du|des|et|a|au|aux|pour|sur|di|da|con|per|al|alla|su|y|para|sobre|e|com|em|met|van|en|voor|op|cu|din|pe|pentru|銘)\s"
+)
+"""Where the name of a thing ends and its description begins."""
+_SUPPORT = re.compile(
+    r"\b(?:on|in|with|and|recessed in|auf|sur|su|sobre|op)\s[^,;]{0,40}?\b(?:base|plinth|socle|pedestal)\b"
+)
+"""What a medium says of the base."""
+_SHOWN = 80
+"""Characters of a cell that a message repeats."""
+IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
+"""Letters of scripts that put no spaces between words: there one letter may precede an ending."""
+
+
+@lru_cache(maxsize=4096)
+def fold(text: str) -> str:
+    """Return a text without capitals and accents, so that Büste, buste and BUSTE are the same word."""
+    if not text.isascii():
+        text = "".join(c for c in normalize("NFKD", text) if not combining(c))
+    return text.casefold()
+
+
+@lru_cache(maxsize=65536)
+def stuff(material: str, medium: str) -> str:
+    """Return what a thing is made of, folded, without what is said of its base."""
+    return _SUPPORT.sub(" ", fold(f"{material} {medium}"))
+
+
+def words_of(entries: Iterable[str]) -> re.Pattern[str]:
+    """Return what finds any of some words in what `fold` or `stuff` returns, in singular or plural, the longest first.
+
+    Words of scripts without spaces are found within others; `=oil paint` is all that there is, but for a date.
+    """
+    entries = tuple(entries)
+    alone = sorted({re.escape(fold(entry[1:])) for entry in entries if entry.startswith("=")}, key=len, reverse=True)
+    whole = [rf"\A\s*(?:{'|'.join(alone)})s?\s*(?:[,;(.]?\D{{0,4}}\d{{4}}\b.*)?\Z"] if alone else []
+    words = sorted({fold(entry) for entry in entries if entry[:1] != "="}, key=lambda word: (-len(word), word))
+    within = [word for word in words if IDEOGRAPH.search(word)]
+    apart = [re.escape(word) for word in words if word not in within]
+    bounded = [rf"\b(?:{'|'.join(apart)})s?\b"] if apart else []
+    return re.compile("|".join([*whole, *bounded, *map(re.escape, within)]))
+
+
+@lru_cache(maxsize=65536)
+def _has(words: re.Pattern[str], text: str) -> bool:
+    return words.search(text) is not None
+
+
+def identifiers(text: str) -> frozenset[str]:
+    """Return the Getty AAT identifiers in a text, as bare numbers: 300132254, aat:300132254 and addresses alike."""
+    return frozenset(_IDENTIFIER.findall(text))
+
+
+def _name(name: str) -> str:
+    if not name.strip() or ":" in name:
+        raise InputError("must be a name without a colon")
+    return name
+
+
+def _known_class(name: str, info: ValidationInfo) -> str:
+    classes = (info.context or {})["classes"]
+    if name not in classes:
+        raise InputError(f"classes.csv has no class {name[:_SHOWN]!r}; use one of {', '.join(sorted(classes))}")
+    return name
+
+
+def _identifier(entry: str) -> str:
+    if _IDENTIFIER.fullmatch(entry) is None:
+        raise InputError(f"{entry[:_SHOWN]!r} is no AAT identifier; write nine digits, as 300132254, parted by |")
+    return entry
+
+
+def _word(entry: str) -> str:
+    if not WORD.search(fold(entry)) or "*" in entry[1:]:
+        raise InputError(f"{entry[:_SHOWN]!r} has no word; write words, or an ending as *vase")
+    return entry
+
+
+def _shape(name: str) -> str:
+    if name not in SHAPES:
+        raise InputError(f"there is no shape {name[:_SHOWN]!r}; use some of {', '.join(SHAPES)}")
+    return name
+
+
+def _each(check: Callable[[str], str]) -> AfterValidator:
+    return AfterValidator(lambda entries: tuple(map(check, entries)))
+
+
+class _RuleRow(BaseModel):
+    """A row of a table of rules, as the opening of this module says."""
+
+    rule: Annotated[str, AfterValidator(_name)]
+    object_class: Annotated[str, Field(alias="class"), AfterValidator(_known_class)]
+    aat: Annotated[Entries, _each(_identifier)]
+    classification: Entries
+    words: Annotated[Entries, _each(_word)]
+    medium: Entries
+    shape: Annotated[tuple[str, ...], _each(_shape), BeforeValidator(str.split)]
+    why: str
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One row of rules.csv, ready to match; ``words`` without endings, ``endings`` without their asterisk."""
+
+    position: int
+    name: str
+    object_class: str
+    aat: frozenset[str]
+    kinds: frozenset[str]
+    words: frozenset[str]
+    endings: tuple[str, ...]
+    medium: re.Pattern[str] | None
+    shapes: tuple[Callable[[Item], bool], ...]
+    why: str
+
+    @property
+    def named(self) -> bool:
+        """Whether the row asks for a naming word."""
+        return bool(self.words or self.endings)
+
+    def fits(self, item: Item) -> bool:
+        """Say whether the object's medium and measures are those of the row."""
+        if self.medium is not None and not _has(self.medium, stuff(item.material, item.medium)):
+            return False
+        return all(shape(item) for shape in self.shapes)
+
+
+@dataclass(frozen=True, eq=False)
+class RuleTable:
+    """The rules in order, and where to find those of a word.
+
+    wordless, classed : those that ask for no naming word: of medium and measures only, and of the classification too
+    own     : the names of the museum's own rules, which decide outright
+    spanning : the phrases that a word such as "of" or "de" does not break
+    aat     : every identifier that some rule names
+    by_last : the known words and phrases by their last word
+    endings : the known endings by their last letter, the longest first
+    values  : what is assumed of the classes that the rules name
+    """
+
+    rules: tuple[Rule, ...]
+    by_word: Mapping[str, tuple[Rule, ...]]
+    by_ending: Mapping[str, tuple[Rule, ...]]
+    wordless: tuple[Rule, ...]
+    classed: tuple[Rule, ...]
+    own: frozenset[str]
+    spanning: re.Pattern[str] | None
+    aat: frozenset[str]
+    by_last: Mapping[str, tuple[str, ...]]
+    endings: Mapping[str, tuple[str, ...]]
+    values: AssumedValues
+
+
+@dataclass(frozen=True)
+class RuleMatch:
+    """The rule that decided, and what in the record made it hold ("" where the row asks for no name).
+
+    word : the naming word that it found, an ending with its asterisk
+    """
+
+    rule: Rule
+    evidence: str = ""
+    word: str = ""
+
+    @property
+    def words(self) -> str:
+        """The decision in words: the rule's name, its reason, and the evidence."""
+        said = f" ({self.evidence})" if self.evidence else ""
+        return f"{self.rule.name}: {self.rule.why}{said}"
+
+
+def read_rules(
+    rows: tuple[Row, ...], values: AssumedValues, file: str = "rules.csv", own: Iterable[str] = ()
+) -> RuleTable:
+    """Return rows of a table of rules, ready to match.
+
+    own    : the names of those that are the museum's own
+    raises : TableError naming file, line, rule, column and remedy, for an unknown class or shape, a name used twice,
+             an identifier that is none of the AAT's, a word that cannot match, and a last row with conditions
+    """
+    if not rows:
+        raise TableError(f"{file}: has no rows; the last row must be a rule without conditions")
+    written = checked(_RuleRow, rows, file, named="rule", context={"classes": frozenset(values.classes)})
+    once((row.rule for row in written), "rule", file)
+    out = [_rule(row, at) for at, row in enumerate(written)]
+    if any(rows[-1][column].strip() for column in ("aat", "classification", "words", "medium", "shape")):
+        raise TableError(
+            f"{file}, line {len(rows) + 1}: the last row must have no conditions, so that it takes the rest"
+        )
+    words: dict[str, list[Rule]] = {}
+    endings: dict[str, list[Rule]] = {}
+    for rule in out:
+        for word in sorted(rule.words):
+            words.setdefault(word, []).append(rule)
+        for ending in rule.endings:
+            endings.setdefault(ending, []).append(rule)
+    by_last: dict[str, list[str]] = {}
+    for word in words:
+        by_last.setdefault(word.rpartition(" ")[2], []).append(word)
+    return RuleTable(
+        tuple(out),
+        {word: tuple(found) for word, found in words.items()},
+        {ending: tuple(found) for ending, found in endings.items()},
+        tuple(r for r in out if not r.named and not r.kinds and (r.medium or r.shapes or r is out[-1])),
+        tuple(r for r in out if not r.named and r.kinds),
+        frozenset(own),
+        _spanning(words),
+        frozenset().union(*(rule.aat for rule in out)),
+        {last: tuple(phrases) for last, phrases in by_last.items()},
+        _by_last_letter(endings),
+        values,
+    )
+
+
+def _by_last_letter(endings: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    out: dict[str, list[str]] = {}
+    for ending in sorted(endings, key=lambda one: (-len(one), one)):
+        out.setdefault(ending[-1], []).append(ending)
+    return {letter: tuple(found) for letter, found in out.items()}
+
+
+def _spanning(words: Iterable[str]) -> re.Pattern[str] | None:
+    """Return what finds a phrase with a breaking word in it at the beginning of a text, in singular or plural."""
+    phrases = sorted((re.escape(word) for word in words if BREAK.search(word)), key=lambda one: (-len(one), one))
+    return re.compile(rf"(?:{'|'.join(phrases)})s?\b") if phrases else None
+
+
+def _rule(row: _RuleRow, position: int) -> Rule:
+    words = [(" ".join(WORD.findall(fold(entry))), entry.startswith("*")) for entry in row.words]
+    return Rule(
+        position,
+        row.rule,
+        row.object_class,
+        frozenset(row.aat),
+        frozenset(singular(fold(kind).replace("&", "and")) for kind in row.classification),
+        frozenset(word for word, ends in words if not ends),
+        tuple(word for word, ends in words if ends),
+        words_of(row.medium) if row.medium else None,
+        tuple(SHAPES[name] for name in row.shape),
+        row.why,
+    )
+
+
+@cache
+def rules() -> RuleTable:
+    """Return Kouros's own table of rules.
+
+    raises : TableError, as read_rules
+    """
+    return read_rules(table("rules"), assumed())
+
+
+def with_own(path: Path | None, values: AssumedValues | None = None) -> RuleTable:
+    """Return a museum's own rules, followed by Kouros's; a row of the same name takes the place of Kouros's.
+
+    path   : a CSV file with the columns of tables/rules.csv; None: the museum has no rules of its own
+    values : what is assumed of the classes; None: Kouros's own tables
+    raises : TableError naming file, line, rule, column and remedy; FileNotFoundError
+    """
+    values, ours = values or assumed(), table("rules")
+    if path is None:
+        return read_rules(ours, values)
+    own = read_table(path)
+    missing = [column for column in ours[0] if own and column not in own[0]]
+    if missing:
+        raise TableError(f"{path.name}: there is no column {missing[0]!r}; its columns must be {', '.join(ours[0])}")
+    names = {row["rule"] for row in own}
+    both = (*own, *(row for row in ours if row["rule"] not in names))
+    return read_rules(both, values, path.name, names)
+
+
+def singular(kind: str) -> str:
+    """Return a word of a classification in the singular."""
+    return kind[:-1] if kind.endswith("s") and not kind.endswith("ss") else kind
