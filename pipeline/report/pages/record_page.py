@@ -33,6 +33,7 @@ from pipeline.report.pages.record_words import (
     axis_names,
     azimuth,
     corner_reason,
+    doubted,
     measured,
     number,
     origin,
@@ -69,6 +70,7 @@ class RecordView:
     processing: str
     reason: str
     accepted: tuple[str, ...]
+    doubted: tuple[str, ...]
     columns: tuple[str, ...]
     measures: tuple[Row, ...]
     histories: tuple[Markup, ...]
@@ -126,6 +128,7 @@ def record_view(one: Inspection, units: Units, ident: str) -> RecordView:
         processing=processing(one),
         reason=corner_reason(one),
         accepted=accepted(one),
+        doubted=doubted(one),
         columns=(*names.values(), "Resultant"),
         measures=tuple(_measures(one, units)),
         histories=tuple(svg for svg in pictures),
