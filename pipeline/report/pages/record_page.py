@@ -137,7 +137,8 @@ def record_view(one: Inspection, units: Units, ident: str) -> RecordView:
         fourier_caption=f"Smoothed amplitude in {units.symbol('m/s')} at the lines nearest to round frequencies",
         fourier_rows=tuple(_fourier(smooth, units)),
         response=tuple(svg for svg in response(one, names, f"{ident}s")),
-        usable="" if longest is None else f"{number(longest)} s",
+        # Beyond the picture nothing is shaded.
+        usable="" if longest is None or longest >= one.spectra["rotd100"].periods[-1] else f"{number(longest)} s",
         spectrum_columns=_spectrum_columns(one),
         spectrum=tuple(_spectrum(one)),
         compared=_compared(one),

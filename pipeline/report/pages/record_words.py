@@ -58,6 +58,9 @@ def corner_reason(one: Inspection) -> str:
     if one.corners[0] is None:
         return ""
     said = next((s for s in one.motion.steps if s.startswith("high-pass corner ") and _CHOSEN in s), "")
+    # What is doubtful of it is said below, by itself.
+    for doubt in doubts([said]):
+        said = said.replace(f"; {doubt}", "")
     return f"Chosen from the record by {clean(said.split(_CHOSEN, 1)[1])}" if said else "Given in the site’s manifest"
 
 
