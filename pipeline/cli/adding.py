@@ -219,7 +219,9 @@ def _lines(done: "Addition", *, guess: bool, dry: bool) -> list[str]:
     if guess:
         rows += [[one.name, "-", "-", "-", "-", "-", f"left: {one.reason}"] for one in done.left]
     lines = aligned(["record", "level", "M", "km", "PGA g", "PGV cm/s", "what was made of it"], rows, words={0, 1, 6})
-    if not guess:
+    if guess:
+        lines += [f"{one.name}: doubtful: {doubt}" for one in done.placed for doubt in one.doubts]
+    else:
         for one in done.placed:
             lines += ["", f"{one.name}: {', '.join(one.record.all_files)}", *(f"  {told}" for told in one.told)]
         lines += [f"left: {one.name}: {one.reason}" for one in done.left]

@@ -15,6 +15,8 @@ from pipeline.motions.station_metadata import place
 _TOGETHER = 60.0
 """s, how far apart two versions of one recording may have started."""
 
+_REMEDY = "; give the surface's files"
+
 _FREE_FIELD = re.compile(r"\bfree[- ]?field\b", re.IGNORECASE)
 
 _ACCELEROMETERS = "NG"
@@ -38,11 +40,14 @@ class ChosenChannels:
         What was left out, and why.
     refused : str
         Why none of it can be used; "" where it can.
+    below : bool
+        Whether that is because all of it stood in a borehole.
     """
 
     traces: Sequence[FileTrace]
     told: tuple[str, ...] = ()
     refused: str = ""
+    below: bool = False
 
 
 def instrument(trace: Any) -> str:
@@ -104,7 +109,7 @@ def chosen(traces: Sequence[FileTrace], wanted: Sequence[str], depth: Callable[[
     told: list[str] = []
     left = _surface(list(traces), depth, told)
     if isinstance(left, str):
-        return ChosenChannels(traces, (), left)
+        return ChosenChannels(traces, (), left, below=True)
     free = [one for one in left if _FREE_FIELD.search(place(one[1]))]
     if len(left) > 3 and len(free) == 3:
         told.append(f"{_codes(free)} stood in the free field, by the files; left: {_codes(_without(left, free))}")
@@ -118,6 +123,31 @@ def chosen(traces: Sequence[FileTrace], wanted: Sequence[str], depth: Callable[[
         told.append(f"{_codes(best)} taken; left: {_codes(_without(left, best))}")
         left = best
     return ChosenChannels(left, (*told, *_stood(left)))
+
+
+def left_below(below: ChosenChannels, others: Sequence[ChosenChannels]) -> tuple[str, bool]:
+    """Say why channels are refused, and whether that stops nothing: the surface of their borehole is among others.
+
+    Parameters
+    ----------
+    below : ChosenChannels
+        What was refused.
+    others : sequence of ChosenChannels
+        Of all groups of channels.
+
+    Returns
+    -------
+    (str, bool)
+    """
+    first = below.traces[0][1].stats
+    above = below.below and any(
+        not one.refused
+        and (s := one.traces[0][1].stats).station == first.station != ""
+        and s.network == first.network
+        and abs(s.starttime - first.starttime) <= _TOGETHER
+        for one in others
+    )
+    return below.refused.replace(_REMEDY, ", where its other record stood") if above else below.refused, above
 
 
 def _stood(traces: Sequence[FileTrace]) -> list[str]:
@@ -211,6 +241,6 @@ def _surface(traces: list[FileTrace], depth: Callable[[Any], float | None], told
         return traces
     out = [one for one in traces if id(one[1]) in deep]
     if len(out) == len(traces):
-        return f"{_codes(out)}: in a borehole, and a museum stands on the surface; give the surface's files"
+        return f"{_codes(out)}: in a borehole, and a museum stands on the surface{_REMEDY}"
     told.append(f"in the borehole, left: {_codes(out)}; a museum stands on the surface")
     return [one for one in traces if id(one[1]) not in deep]

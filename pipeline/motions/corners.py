@@ -8,6 +8,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from pipeline.errors import InputError
+from pipeline.motions.doubts import UNDECIDED
 from pipeline.motions.filtering import POLES, highpass, pad_seconds, remove_baseline
 from pipeline.motions.intensity import integrate, strong_part
 from pipeline.motions.onset import first_arrival, samples_before
@@ -187,7 +188,7 @@ def choose_corner(
     stronger, lower = max(fastest, default=(pgv, corner))
     if stronger > DOUBT_PGV * pgv:
         reasons.append(
-            f"the record does not decide between {lower:.3g} Hz, with a PGV of {100 * stronger:.3g} cm/s in its larger "
+            f"{UNDECIDED}{lower:.3g} Hz, with a PGV of {100 * stronger:.3g} cm/s in its larger "
             f"horizontal channel, and {corner:.3g} Hz with {100 * pgv:.3g} cm/s: the stronger motion is used; "
             f"name highpass_hz to decide"
         )

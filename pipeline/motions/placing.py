@@ -15,6 +15,7 @@ from typing import Any
 import tomlkit
 from pydantic import ValidationError
 
+from pipeline.motions.doubts import doubts
 from pipeline.motions.errors import Judgement, MotionError, refusal, unwritten
 from pipeline.motions.manifest import MANIFEST, LevelTable, Manifest, load_manifest
 from pipeline.motions.processing import EAST
@@ -41,13 +42,16 @@ class PlacedRecords:
     record : Record
         The manifest's table of it.
     told : tuple of str
-        What was decided, and why.
+        What was decided, and why; what is doubtful of its motion too.
+    doubts : tuple of str
+        What is doubtful of its motion.
     """
 
     name: str
     level: str
     record: Record
     told: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
 
 
 @dataclass(eq=False)
@@ -171,7 +175,7 @@ def plan(
                 copies[known_as] = path
             final[local] = known_as
         try:
-            accepted = _tried(record, proposal.files, table, reasons, known)
+            accepted, doubtful = _tried(record, proposal.files, table, reasons, known)
         except MotionError as problem:
             made.refused.append((proposal.name, unwritten(problem)))
             continue
@@ -185,7 +189,8 @@ def plan(
             ),
         ]
         told += [f"overruled {what}: {why}" for what, why in accepted.items()]
-        made.placed.append(PlacedRecords(name, level, named, tuple(told)))
+        told += [f"doubtful: {doubt}" for doubt in doubtful]
+        made.placed.append(PlacedRecords(name, level, named, tuple(told), doubtful))
         made.copies |= copies
         digests |= {record.sha256[local]: at for local, at in final.items()}
         names.add(name)
@@ -245,8 +250,8 @@ def _tried(
     table: LevelTable | None,
     reasons: Mapping[str, str],
     known: Manifest | None,
-) -> dict[Judgement, str]:
-    """Process a record from where its files are now, and return the refusals that are overruled, with the reasons."""
+) -> tuple[dict[Judgement, str], tuple[str, ...]]:
+    """Process a record from where its files are now; return why refusals are overruled, and what is doubtful of it."""
     now = _renamed(record, {local: str(path.absolute()) for local, path in files.items()})
     azimuth = EAST if known is None else known.site.x_azimuth
     accepted: dict[Judgement, str] = {}
@@ -254,14 +259,14 @@ def _tried(
         try:
             granted = now.model_copy(update={"accept": accepted})
             # What is wrong is in the record's files: there is no manifest yet that could be looked into.
-            prepare(Path(now.files[0]), "", granted, None if table is None else table.target, azimuth)
+            done = prepare(Path(now.files[0]), "", granted, None if table is None else table.target, azimuth)
         except MotionError as problem:
             reason = reasons.get(problem.judgement) or reasons.get("")
             if not reason or not problem.judgement or problem.judgement in accepted:
                 raise
             accepted[problem.judgement] = reason
         else:
-            return accepted
+            return accepted, doubts(done.motion.steps)
 
 
 def changed(made: PlacingPlan, site: StationTable) -> str:

@@ -15,6 +15,7 @@ from pipeline.motions.baseline import (
     two_segment_baseline,
 )
 from pipeline.motions.corners import choose_corner
+from pipeline.motions.doubts import DRIFTS
 from pipeline.motions.filtering import highpass, lowpass, remove_baseline
 from pipeline.motions.intensity import integrate
 from pipeline.motions.manifest import TargetTable
@@ -274,8 +275,7 @@ def starting_velocity(data: Array, velocity: Array, dt: float) -> tuple[Array, t
     off = np.abs(mean - first) > TRANSIENT * peak
     drifts = drift > DRIFTING * peak
     told = [
-        f"{'xyz'[i]}: its acceleration drifts against the velocity of its files, by {drift[i]:.2g} m/s until its end: "
-        "its displacement is not that of its source"
+        f"{'xyz'[i]}{DRIFTS}, by {drift[i]:.2g} m/s until its end: its displacement is not that of its source"
         for i in np.flatnonzero(drifts)
     ]
     told += [

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from pipeline.motions.candidates import Unusable
 from pipeline.motions.catalogues import distance_km, matching
-from pipeline.motions.channel_choice import chosen, described, is_velocity, one_version, saturated
+from pipeline.motions.channel_choice import chosen, described, is_velocity, left_below, one_version, saturated
 from pipeline.motions.errors import MotionError
 from pipeline.motions.gathering import GatheredFiles
 from pipeline.motions.grouping import FileTrace, channels, grouped
@@ -133,10 +133,10 @@ def propose(found: GatheredFiles, answers: Answers) -> tuple[list[RecordProposal
     inventories = list(found.catalogues.inventories.values())
     left: list[Unusable] = []
     kept: list[tuple[str, Sequence[FileTrace], list[str]]] = []
-    for of, traces in groups:
-        picked = chosen(traces, answers.channels, lambda trace: depth(inventories, trace))
+    picks = [chosen(traces, answers.channels, lambda trace: depth(inventories, trace)) for _, traces in groups]
+    for (of, _), picked in zip(groups, picks, strict=True):
         if picked.refused:
-            left.append(Unusable(_label(of), picked.refused))
+            left.append(Unusable(_label(of), *left_below(picked, picks)))
         else:
             kept.append((of, picked.traces, list(picked.told)))
     out = dict(one_version([traces for _, traces, _ in kept], answers.processed.get("") is False))

@@ -16,6 +16,7 @@ import numpy as np
 from pipeline.motions import knet
 from pipeline.motions.earthquakes import earthquakes, listed, window_of
 from pipeline.motions.errors import MotionError, judged, refusal
+from pipeline.motions.formats.trace_headers import channel_code
 from pipeline.motions.joining import Row, aligned, channel_of, check_common, check_together, only_piece
 from pipeline.motions.orientation import by_station, oriented
 from pipeline.motions.own_facts import own_event
@@ -47,6 +48,11 @@ UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "g": G, "mg": 
 _SPELLINGS = {"m/s**2": "m/s2", "m/s/s": "m/s2", "m/s^2": "m/s2", "cm/s**2": "cm/s2", "cm/s/s": "cm/s2"}
 # obspy's ASCII readers hand on the storage type in the place of the unit where a file was written without one.
 _SILENT = {"", "integer", "float", "ascii", "unknown"}
+
+_NAMELESS = {"SEGY", "SU"}
+"""Formats whose traces have no names: several in a file are numbered."""
+
+_SAC_KINDS = {6: "a displacement", 7: "a velocity"}
 
 MOST_SAMPLES = 4_000_000
 """Samples of a component that is used as a whole; an hour at 1,000 samples a second has 3.6 million."""
@@ -308,6 +314,9 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
     steps += [f"{file.name}: the reader warned: {str(w.message)[:200]}" for w in said]
     _check_complete(file, stream)
     knet.complete(file, stream)
+    if 1 < len(stream) < 10 and all(t.id == "..." and t.stats._format in _NAMELESS for t in stream):
+        for number, trace in enumerate(stream, start=1):
+            trace.stats.channel = channel_code(trace.stats.sampling_rate, None, number)
     try:
         stream.merge(method=-1)
     except Exception as error:  # obspy raises a bare Exception for pieces that do not belong together
@@ -410,6 +419,9 @@ def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> 
         step = f"{key}: response of {record.response} removed to m/s2, {how}"
         return [step, *said]
     unit = record.units or own
+    if (kind := _SAC_KINDS.get(stats.get("sac", {}).get("idep"))) is not None:
+        wrong = f"its header says that it holds {kind} (IDEP), no acceleration"
+        raise refusal(file, f"component {key!r}", wrong, "give the acceleration, or counts with their response")
     if stats.get("kouros", {}).get("units"):
         return _by_header(file, key, record, trace)
     if own and record.units and UNITS[record.units] != factor:

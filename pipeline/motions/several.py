@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from pipeline.motions.doubts import ALL_USED, MAY_HOLD
 from pipeline.motions.earthquakes import LEAST, QUIET, Earthquake, earthquakes, in_seconds, listed
 from pipeline.motions.errors import judged
 from pipeline.motions.parts import whole
@@ -101,7 +102,7 @@ def tell_earthquakes(row: tuple[Path, Any, str], record: Record, steps: list[str
         remedy = "choose one by origin_time or window_s"
         judged(record.accept, "several", file, f"record {record.name!r}", told, remedy, steps)
     else:
-        steps.append(f"{file.name} {told}; all of it is used, window_s or origin_time would choose")
+        steps.append(f"{file.name} {told}{ALL_USED}window_s or origin_time would choose")
     return found
 
 
@@ -147,8 +148,8 @@ def tell_renewals(
         for one in found
     )
     return [
-        f"may hold {'two' if len(found) == 1 else 'several'} earthquakes, or one whose fault broke in parts: it shakes "
-        f"anew {when}; all of it is used, window_s would choose"
+        f"{MAY_HOLD}{'two' if len(found) == 1 else 'several'} earthquakes, or one whose fault broke in parts: it "
+        f"shakes anew {when}{ALL_USED}window_s would choose"
     ]
 
 

@@ -353,6 +353,7 @@ def described(one: Addition) -> dict[str, Any]:
                 "name": placed.name,
                 "level": placed.level,
                 "told": list(placed.told),
+                "doubts": list(placed.doubts),
                 **{key: one.measures[placed.name][key] for key in ("pga", "pgv", "pgd") if placed.name in one.measures},
                 **placed.record.model_dump(mode="json", exclude_none=True, include=_KEYS),
             }

@@ -113,6 +113,7 @@ def _collection(settings: Settings) -> tuple[str, str]:
 
 
 def _motions(settings: Settings) -> tuple[str, str]:
+    from pipeline.motions.doubts import doubts as doubtful
     from pipeline.motions.errors import MotionError
     from pipeline.motions.manifest import load_manifest, unlisted
     from pipeline.motions.site import levels_at, read_site
@@ -136,8 +137,9 @@ def _motions(settings: Settings) -> tuple[str, str]:
     ]
     text = f"{site.name} ({site.folder}): {'; '.join(peaks)}"
     known(settings, site)
+    every = list(site.levels)
     for floor in site.floors:
-        levels_at(site, floor)
+        every += levels_at(site, floor)
         text += f"; floor {floor}"
     doubts = [f"level {level.name}: {level.caution}" for level in site.levels if level.caution]
     nobody = [level.name for level in site.levels if not level.approved_by]
@@ -147,6 +149,9 @@ def _motions(settings: Settings) -> tuple[str, str]:
         doubts.append(f"no vertical was recorded, and none shakes anything: {', '.join(flat)}")
     if made:
         doubts.append(f"no vertical was recorded, and one is estimated: {', '.join(made)}")
+    # A floor's motion made of the ground's has its steps too.
+    told = (f"{m.motion.name}: {doubt}" for v in every for m in v.motions for doubt in doubtful(m.motion.steps))
+    doubts += dict.fromkeys(told)
     stray = unlisted(site.file, site.manifest)
     if stray:
         doubts.append(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pipeline.motions.doubts import doubts
 from pipeline.motions.errors import Judgement, MotionError
 from pipeline.motions.manifest import GROUND_FLOOR, load_manifest, manifest_file
 from pipeline.motions.site import levels_at, prepare, read_site
@@ -161,6 +162,7 @@ def described(one: "Inspection") -> dict[str, Any]:
             "pulse_pgv": one.pulse.pulse_pgv,
             "method": one.pulse.method,
         },
+        "doubts": list(doubts(one.motion.steps)),
         "steps": list(one.motion.steps),
     }
 

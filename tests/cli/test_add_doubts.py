@@ -6,6 +6,7 @@ import bz2
 import gzip
 import json
 import re
+import shutil
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -16,11 +17,14 @@ import pytest
 from pipeline.motions import load_manifest
 from pipeline.motions.gathering import gather
 from pipeline.motions.proposing import Answers, propose
-from tests.cli.test_add_command import KNOWN, at2, digest, say, three, trace
+from tests.cli.test_add_command import DEMO, KNOWN, at2, digest, say, three, trace
 from tests.motions.conftest import tone
 from tests.motions.formats import national
 from tests.motions.formats import specimens as hand
 from tests.motions.formats.every import SPECIMENS
+
+# isort: split
+import obspy  # after what imports it in a way that warns of nothing
 
 WEAK = 0.0015
 """m/s2: 0.00015 g, below the least that passes, 0.002 g."""
@@ -259,3 +263,31 @@ def test_an_unknown_file_shows_its_first_line_and_the_way_out(tmp_path: Path) ->
     assert "CSMIP V1 and V2" in out
     assert "MiniSEED" in out
     assert "kouros motions convert FILE --columns" in out
+
+
+def test_a_second_earthquake_is_told_where_it_is_seen(tmp_path: Path) -> None:
+    """The demonstration's record and its copy 120 s later, which begins to shake at 152 s."""
+    new = tmp_path / "new"
+    new.mkdir()
+    for file in sorted(DEMO.glob("CI.CLC*")):
+        if file.suffix != ".mseed":
+            shutil.copy(file, new)
+            continue
+        (one,) = obspy.read(str(file))
+        late = round(120.0 / one.stats.delta)
+        data = np.zeros(one.stats.npts + late)
+        data[: one.stats.npts] = one.data - np.median(one.data)
+        data[late:] += one.data - np.median(one.data)
+        one.data = np.round(data).astype(np.int32)
+        one.write(str(new / file.name), format="MSEED", encoding="STEIM2")
+    told = re.compile(r"doubtful:? +may hold two earthquakes, .* it shakes anew at 15[0-9] s .*; all of it is used")
+    for words in ((), ("--guess",)):
+        code, out = say(tmp_path, "add", str(new), "--site", "mine", "--no-compare", "--dry-run", *words)
+        assert (code, len(told.findall(out))) == (0, 1), out
+    code, out = say(tmp_path, "add", str(new), "--site", "mine", "--no-compare")
+    assert (code, len(told.findall(out))) == (0, 1), out
+    assert "# doubtful: may hold two earthquakes" in (tmp_path / "mine" / "manifest.toml").read_text(encoding="utf-8")
+    page = (tmp_path / "mine" / "added.html").read_text(encoding="utf-8")
+    assert re.search(r'<p class="act">Doubtful: may hold two earthquakes, [^<]*</p>', page)
+    code, out = say(tmp_path, "show", "mine")
+    assert (code, len(told.findall(out))) == (0, 1), out

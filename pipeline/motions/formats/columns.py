@@ -31,6 +31,10 @@ _LEAST_ROWS, _MOST_COLUMNS, _MOST_HEAD = 5, 20, 200
 _BARE = 4
 """Most columns of a table that nothing names."""
 
+_TELLING_ROWS, _ALIKE, _SMOOTH = 50, 1.5, 0.8
+"""Rows from which the numbers tell whether they are one series; the largest over the smallest of their steps, and those
+over the steps from row to row, up to which they do (judgement)."""
+
 _OTHERS = ("bhrc", "cosmos", "csmip", "csmnc", "cwa", "esm", "geonet", "jma", "nsmn", "peer", "smc", "table", "unam",
            "volume1")  # fmt: skip
 
@@ -165,6 +169,9 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
     one = width == 1 or (
         not columns and not timed and (announced == values.size or (not whole and announced > len(table)))
     )
+    if not one and not announced and not columns and not timed and head.step is not None:
+        # What follows on itself tells; a file's first part may be all noise, and is settled with the whole.
+        one = not whole or _reads_on(values, width)
     if even and not one and (timed or columns or head.count == len(table)):
         block.data = table
         if timed:
@@ -175,9 +182,28 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
         wrong = f"announces {announced} samples, and {values.size} numbers are there, {width} a row"
         raise lines.error(head.at["count"], wrong, "it is cut off or damaged: fetch it again")
     else:
-        wrong = f"neither names of columns nor a count say whether {width} numbers a row are components or one series"
+        wrong = (
+            f"neither names of columns, nor a count, nor the numbers say whether {width} a row are components or one "
+            f"series"
+        )
         raise lines.error(start, wrong, "name the columns: kouros motions convert")
     return block, start
+
+
+def _reads_on(values: Array, width: int) -> bool:
+    """Whether numbers are one series that is wrapped over rows: by their steps from one to the next.
+
+    Along a series these are smaller than those from row to row, and as large between the last of a row and the first of
+    the next as within one.  Between components they are larger than those from row to row; between sensors that move
+    alike, those from the end of a row to the next are.
+    """
+    table = values[: values.size // width * width].reshape(-1, width)
+    if len(table) < _TELLING_ROWS:
+        return False
+    follows = np.column_stack([np.diff(table, axis=1)[:-1], table[1:, 0] - table[:-1, -1]])
+    each = np.sqrt((follows**2).mean(axis=0))
+    down = float(np.sqrt((np.diff(table, axis=0) ** 2).mean()))
+    return bool(0.0 < each.max() < _ALIKE * each.min() and each.max() < _SMOOTH * down)
 
 
 def _timed(
@@ -282,7 +308,10 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         unit = column.unit if column.kind else head.unit
         named = column.name and (width > 1 or labels.points(column.orientation))
         said = column.orientation if named else head.orientation
-        factor = trace_headers.FACTORS.get(unit)
+        factor, notes = trace_headers.FACTORS.get(unit), ""
+        if (column.kind or head.kind) == "counts" and head.scale and head.scaled in trace_headers.FACTORS:
+            factor = trace_headers.FACTORS[head.scaled] / head.scale
+            notes = f"its head says {head.scale:.9g} counts for 1 {head.scaled}, at every frequency"
         data = block.data[:, number].copy()
         peak = head.peak[0] if head.peak and width == 1 and factor else None
         if peak and head.peak and factor:
@@ -306,7 +335,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 start_is="unknown" if begins is None else "record",
                 headonly=headonly,
                 peak={"acceleration": peak},
-                more={"column": column.name} if column.name else {},
+                more=({"column": column.name} if column.name else {}) | ({"notes": notes} if notes else {}),
                 about=header_facts.about(**head.about),
             )
         )

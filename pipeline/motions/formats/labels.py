@@ -43,11 +43,13 @@ _COUNT = _label(
     r"(\d{1,9})(?![.\d])",
 )
 _UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit|birim|单位|単位|единицы(?: измерения)?", r"(\S.*)")
-_IN = re.compile(r"\bac\w{3,8}ation\b.{0,40}?\bin (?:units of )?(\S{1,12})\s*$", re.I)
+_IN = re.compile(r"\bac\w{3,8}ations?\b.{0,40}?\bin (?:units of )?(\S{1,12})\s*$", re.I)
 _TURN = _label(
     r"orientation|comp\.?|component[eo]?|composante|komponente|orientaci.{1,2}n|direction|azimuth(?:_deg)?|stream",
     r"(\S{1,12}(?: deg)?)",
 )
+_SCALE = _label("scale_factor", _NUMBER)
+_SCALED = _label("scale_units", r"(\S{1,12})")
 _DIP = _label("dip(?:_deg)?", _NUMBER)
 _SID = _label("sid", r"([A-Z0-9]{0,8})_([A-Z0-9]{1,8})_([A-Z0-9]{0,8})_([A-Z0-9]_?[A-Z0-9]_?[A-Z0-9])\b")
 _STATION = _label(r"station(?: code)?|estaci.{1,2}n|stazione", r"(\w{2,8})(?=\s|,|$)")
@@ -117,6 +119,7 @@ _ALIKE = {
     "m/s/s": "m/s2",
     "mm/s/s": "mm/s2",
     "g's": "g",
+    **dict.fromkeys(("pctg", "percentg", "percentofg", "g%", "%ofg"), "%g"),
     "м/с2": "m/s2",
     "см/с2": "cm/s2",
     "гал": "gal",
@@ -179,6 +182,8 @@ class RecordHead:
         Whether the samples were filtered.
     start : tuple of float, or None
         Year to second of the first sample, where the head says that they are UTC.
+    scale, scaled : float or None, str
+        Counts of one unit of what is measured, and that unit, as GeoCSV says them.
     peak : tuple of float, or None
         The peak acceleration and one in its last digit, in m/s2.
     code : tuple of str
@@ -197,6 +202,8 @@ class RecordHead:
     orientation: Orientation = None
     processed: bool | None = None
     start: tuple[float, ...] | None = None
+    scale: float | None = None
+    scaled: str = ""
     peak: tuple[float, float] | None = None
     code: tuple[str, str, str, str] = ("", "", "", "")
     columns: tuple[HeadColumn, ...] = ()
@@ -341,6 +348,8 @@ def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:
         mantissa, _, power = found[2].lower().partition("e")
         digit = 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))
         head.says(lines, index, "peak", (FACTORS[unit[1]] * abs(float(found[2])), FACTORS[unit[1]] * digit))
+    if (found := _SCALE.search(text)) and float(found[2]) != 0.0:
+        head.says(lines, index, "scale", float(found[2]))
     for key, pattern in _PLACE.items():
         if found := pattern.search(text):
             head.about.setdefault(key, float(found[2]))
@@ -363,6 +372,8 @@ def _words(lines: Lines, index: int, text: str, head: RecordHead) -> None:
         head.at["orientation"] = index
     elif (found := _TURN.search(text)) and head.orientation not in {"up", "down"}:
         head.says(lines, index, "orientation", turned(found[2].rstrip(",;")))
+    if found := _SCALED.search(text):
+        head.says(lines, index, "scaled", unit_of(found[2])[1])
     if found := _START.search(text):
         head.says(lines, index, "start", tuple(map(float, found.groups()[1:])))
 

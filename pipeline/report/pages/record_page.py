@@ -33,6 +33,7 @@ from pipeline.report.pages.record_words import (
     axis_names,
     azimuth,
     corner_reason,
+    doubted,
     measured,
     number,
     origin,
@@ -69,6 +70,7 @@ class RecordView:
     processing: str
     reason: str
     accepted: tuple[str, ...]
+    doubted: tuple[str, ...]
     columns: tuple[str, ...]
     measures: tuple[Row, ...]
     histories: tuple[Markup, ...]
@@ -126,6 +128,7 @@ def record_view(one: Inspection, units: Units, ident: str) -> RecordView:
         processing=processing(one),
         reason=corner_reason(one),
         accepted=accepted(one),
+        doubted=doubted(one),
         columns=(*names.values(), "Resultant"),
         measures=tuple(_measures(one, units)),
         histories=tuple(svg for svg in pictures),
@@ -134,7 +137,8 @@ def record_view(one: Inspection, units: Units, ident: str) -> RecordView:
         fourier_caption=f"Smoothed amplitude in {units.symbol('m/s')} at the lines nearest to round frequencies",
         fourier_rows=tuple(_fourier(smooth, units)),
         response=tuple(svg for svg in response(one, names, f"{ident}s")),
-        usable="" if longest is None else f"{number(longest)} s",
+        # Beyond the picture nothing is shaded.
+        usable="" if longest is None or longest >= one.spectra["rotd100"].periods[-1] else f"{number(longest)} s",
         spectrum_columns=_spectrum_columns(one),
         spectrum=tuple(_spectrum(one)),
         compared=_compared(one),

@@ -1,5 +1,6 @@
 """Words about an inspected record, on its page and on the terminal."""
 
+from pipeline.motions.doubts import doubts
 from pipeline.motions.inspection import Inspection
 from pipeline.motions.pulses import WaveletPulse
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL
@@ -57,12 +58,20 @@ def corner_reason(one: Inspection) -> str:
     if one.corners[0] is None:
         return ""
     said = next((s for s in one.motion.steps if s.startswith("high-pass corner ") and _CHOSEN in s), "")
+    # What is doubtful of it is said below, by itself.
+    for doubt in doubts([said]):
+        said = said.replace(f"; {doubt}", "")
     return f"Chosen from the record by {clean(said.split(_CHOSEN, 1)[1])}" if said else "Given in the site’s manifest"
 
 
 def accepted(one: Inspection) -> tuple[str, ...]:
     """Return the refusals that a person overruled, each with the reason given."""
     return tuple(clean(step) for step in one.motion.steps if _ACCEPTED in step)
+
+
+def doubted(one: Inspection) -> tuple[str, ...]:
+    """Return what is doubtful of the motion, and used all the same."""
+    return tuple(clean(doubt) for doubt in doubts(one.motion.steps))
 
 
 def verdict(found: WaveletPulse | None, units: Units) -> str:
@@ -93,7 +102,7 @@ def measured(value: float, unit: str, units: Units) -> str:
 
 
 def summary_lines(one: Inspection, units: Units) -> list[str]:
-    """Return the record in eight to fourteen lines of plain text, for a terminal."""
+    """Return the record in eight lines and more of plain text, for a terminal."""
     source, licence = origin(one)
     now, was = one.measures, one.measures_before
     lines = [
@@ -122,6 +131,7 @@ def summary_lines(one: Inspection, units: Units) -> list[str]:
     if one.pulse is not None:
         told += f" Azimuth {azimuth(one.pulse, one.x_azimuth):.0f} degrees from north."
     lines.append(f"  pulse     {told}")
+    lines += [f"  doubtful  {doubt}" for doubt in doubted(one)]
     overruled = accepted(one)
     lines += (
         [f"  accepted  {overruled[0]}" + (f" (and {len(overruled) - 1} more)" if overruled[1:] else "")]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from importlib import import_module
 
+import numpy as np
 import obspy
 import pytest
 
@@ -190,3 +191,53 @@ def test_a_smc_of_unknown_kind_says_no_unit():
     said = trace.stats.kouros
     assert (said.units, said.si_factor, said.processed) == ("", None, None)
     assert abs(trace.data - hand.tone()).max() < 1e-7
+
+
+@pytest.mark.parametrize("word", ["%g", "% g", "%G", "percent g", "pct g"])
+def test_percent_of_g(word):
+    rows = [f"{100.0 * a:.5f}" for a in hand.tone()]
+    (trace,) = traces(hand.joined([f"Units: {word}", "NPTS= 60, DT= .01 SEC", *rows]), "columns")
+    assert trace.stats.kouros.units == "%g"
+    assert abs(trace.stats.kouros.si_factor * trace.data - 9.80665 * hand.tone()).max() < 1e-5
+
+
+@pytest.mark.parametrize("width", [2, 3, 5, 8, 10])
+def test_a_wrapped_series_without_a_count_is_told_by_its_numbers(width):
+    """Quiet at first, as a record is; the last row is full."""
+    count = 1000 // width * width
+    truth = np.sin(np.arange(count) / 9.0) * np.linspace(0.0, 1.0, count)
+    rows = ["".join(f"{a:12.6f}" for a in truth[i : i + width]) for i in range(0, count, width)]
+    head = ["Accelerations in units of g", "time step: 0.01"]
+    (trace,) = traces(hand.joined([*head, *rows]), "columns")
+    assert (trace.stats.npts, trace.stats.delta, trace.stats.kouros.units) == (count, 0.01, "g")
+    assert abs(trace.data - truth).max() < 1e-6
+
+
+def _beside(kind):
+    t = np.arange(400) / 9.0
+    return {
+        "components": np.column_stack([np.sin(t), np.sin(1.3 * t + 1.0), 0.3 * np.sin(2.1 * t)]),
+        "sensors that move alike": np.column_stack([np.sin(t), 1.01 * np.sin(t), 1.02 * np.sin(t)]),
+        "noise": np.random.default_rng(7).normal(size=(400, 3)),
+        "too few": np.sin(np.arange(60) / 9.0).reshape(-1, 3),
+    }[kind]
+
+
+@pytest.mark.parametrize("kind", ["components", "sensors that move alike", "noise", "too few"])
+def test_columns_without_a_name_are_never_taken_for_a_series(kind):
+    rows = ["".join(f"{a:12.6f}" for a in row) for row in _beside(kind)]
+    with pytest.raises(FormatError, match="line 3: neither names of columns, nor a count, nor the numbers say"):
+        traces(hand.joined(["Units: g", "time step: 0.01", *rows]), "columns")
+
+
+@pytest.mark.parametrize(
+    ("unit", "scaled", "factor"),
+    [("counts", "M/S**2", 1.0 / 213807.0), ("counts", "M/S", None), ("M/S**2", "M/S**2", 1.0)],
+)
+def test_the_scale_of_geocsv_is_of_counts_and_of_an_acceleration_alone(unit, scaled, factor):
+    """A velocity sensor's scale makes no acceleration of its counts, and what is in m/s2 was scaled before."""
+    told = f"# scale_factor: 2.13807E5\n# scale_frequency_hz: 1.0\n# scale_units: {scaled}\n# azimuth_deg"
+    (trace,) = traces(national.geocsv(unit).replace(b"# azimuth_deg", told.encode()), "columns")
+    assert trace.stats.kouros.si_factor == pytest.approx(factor)
+    assert ("213807 counts for 1 m/s2" in trace.stats.kouros.get("notes", "")) == (factor == 1.0 / 213807.0)
+    assert abs(trace.data - hand.tone()).max() < 1e-6
