@@ -327,7 +327,7 @@ def house(asked: Asked) -> DeskAnswer:
 
 def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] | None = None) -> dict[str, Any]:
     """Return what the page of house rules shows."""
-    run = asked.site.run
+    run, rules = asked.site.run, asked.site.workspace.settings.house
     # What the form does not offer is not chosen: it would show "all", and count none.
     offered = {"class": run.classes, "gallery": run.galleries, "states": STATED}
     given = {name: asked.query.get(name, "") for name in offered}
@@ -337,7 +337,9 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
              and given["gallery"] in ("", one.gallery)]  # fmt: skip
     return {
         "asked": run.rule_questions,
-        "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house],
+        "rules": [(at, *_rule_words(rule, run.units)) for at, rule in enumerate(rules) if rule.holds],
+        "ended": [(*_rule_words(rule, run.units), rule.taken_back_by, rule.taken_back_on, rule.taken_back_why)
+                  for rule in rules if not rule.holds],
         "classes": sorted(run.classes, key=class_title), "class_told": class_title, "word_told": word_told,
         "counts": run.classes,
         "galleries": run.gallery_names, "vocabularies": VOCABULARIES, "quantities": QUANTITIES,

@@ -40,7 +40,7 @@ FRICTION = Clause("friction: {friction:-}, {tables} for {material} on {surface}"
 NOT_MEASURED = Clause("not measured")
 NO_HARM_BY_ROCKING = Clause("rocking itself is not taken to harm it, assumed for: {told}")
 
-MASS_OF_FRAMED = Clause("mass: {mass:kg} for each square metre of a framed work, assumed")
+MASS_OF_FRAMED = Clause("mass: {mass:kg/m2} of the face of a framed work, assumed")
 MASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed")
 MASS_OF_CLASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline ({aside}), assumed")
 MASS_OF_METAL = Clause(
