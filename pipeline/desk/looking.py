@@ -21,6 +21,8 @@ from pipeline.desk.words import lasting, name_told
 from pipeline.planning.efforts import EffortSpan
 from pipeline.quantities import sorting_key
 from pipeline.records import DecisionKind, Support, in_force
+from pipeline.report.assumed import assumed
+from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
 from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.decided import Decided
@@ -99,7 +101,9 @@ def object_context(
         "facts": facts, "item": facts.item, "o": facts.view, "gallery": facts.gallery, "listed": listed,
         "notes": page_notes(facts.gallery.objects) if facts.gallery else None,
         "decisions": _decided(facts, run), "cells": cells(facts, run.units),
-        "recorded": _recorded(facts, run), "problem": problem, "typed": typed,
+        "recorded": _recorded(facts, run),
+        "doubts": [(name_told(p.field), assumed(p.message, run.units), assumed(p.remedy, run.units))
+                   for p in facts.item.problems], "problem": problem, "typed": typed,
         "section": section or query.get("open", ""), "saved": query.get("saved", ""),
         "measures": tuple((name, said(one.row.title)) for name, one in installable.items()), "measure": measure,
         "parameters": parameters(asked, facts, measure), "classes": run.class_titles,
@@ -151,6 +155,8 @@ def _recorded(facts: ObjectFacts, run: RunFacts) -> list[tuple[str, str, str]]:
     """Return the record of an object: what, its value in the reader's units, and who says so."""
     item, notes = facts.item, {of.field: of for of in facts.item.provenance}
     texts = ("object_name", "classification", "medium", "dimensions", "gallery", "case")
+    # As the cells take them: eighths of an inch, not 12.4 for 12 3/8.
+    written = by_hand(run.units)
     out = [(name_told(name), str(getattr(item, name)), "") for name in texts if getattr(item, name)]
     for one in measurables():
         value = getattr(item, one.field, None)
@@ -159,7 +165,7 @@ def _recorded(facts: ObjectFacts, run: RunFacts) -> list[tuple[str, str, str]]:
         shown = (
             word_told(one.field, value)
             if vocabulary(one.field)
-            else run.units.text(value, "" if one.unit == "-" else one.unit)
+            else written(one.field, value, "" if one.unit == "-" else one.unit)
         )
         of = notes.get(one.field)
         out.append((labels()[one.field], shown, "; ".join(filter(None, (of.written, of.note))) if of else ""))

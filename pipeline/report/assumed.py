@@ -30,7 +30,7 @@ SOURCES = ("judgement", "handbook tables of dry friction", "strengths: fixings.c
            "share of the footing by judgement")  # fmt: skip
 """What sources say in one clause, besides what they cite."""
 
-CITED = frozenset({"rule", "case", "words", "aside", "shape", "number"})
+CITED = frozenset({"rule", "case", "words", "aside", "shape", "number", "sheet", "recorded", "filled"})
 """Places of phrases for what the museum, or somebody else, wrote: it stays as it is."""
 
 REFUSAL = "refusal"
@@ -98,7 +98,7 @@ def rule_words(rule: str) -> str:
         told = parted((told, _("its record names no class")))
     if found["kind"]:
         likeliest = {
-            "kind": _words(object_classes().get(found["kind"], found["kind"])),
+            "kind": class_words(found["kind"]),
             "chance": local(found["chance"]),
         }
         told += ", " + _("%(kind)s is the likeliest (%(chance)s)") % likeliest
@@ -119,10 +119,10 @@ def sourced(text: str) -> str:
 def _table(found: re.Match[str]) -> str:
     row = found["row"]
     told = said(found[1])
-    return told if row is None else f"{told}, {_class(row)}"
+    return told if row is None else f"{told}, {class_words(row)}"
 
 
-def _class(row: str) -> str:
+def class_words(row: str) -> str:
     """Say what a class is called, or else a material."""
     title = object_classes().get(row, row)
     return _words(title[:1].lower() + title[1:])

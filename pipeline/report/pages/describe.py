@@ -28,7 +28,7 @@ from pipeline.records import (
     Verdict,
 )
 from pipeline.records.result import BOUNDS
-from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced
+from pipeline.report.assumed import assumed, class_words, happening, rejected, rule_words, sourced
 from pipeline.report.by_hand import by_hand
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
@@ -379,7 +379,7 @@ class Describer:
             state=state,
             value_class=clean(item.value_class),
             worth=worth_words(scene, worth) if worth.terms else "",
-            object_class=words(clean(scene.object_class)),
+            object_class=class_words(clean(scene.object_class)),
             taken=taken_words(scene),
             rule=rule_words(clean(scene.rule)),
             support=held(scene),
@@ -393,7 +393,10 @@ class Describer:
             assumptions=tuple(dict.fromkeys(self._sayings.assumed(text) for text in named)),
             statements=tuple(said(clean(text)) for text in scene.statements),
             missing=tuple(missing_words(clean(m)) for m in scene.missing),
-            problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
+            problems=tuple(
+                (words(clean(p.field)), self._sayings.assumed(p.message), self._sayings.assumed(p.remedy))
+                for p in item.problems
+            ),
             wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
             grave=any(grave(f) for f in assessment.findings) if chance is None else chance.lost,
             chance=chance,
