@@ -6,6 +6,7 @@ import csv
 import json
 import re
 from collections import Counter
+from datetime import date
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from pipeline.records import DecisionKind, NewsKind, RunChanges
 from pipeline.report.pages.news import sentences
 from pipeline.settings import load_settings, template
 from pipeline.tools.decisions import Wish, decide
+from pipeline.tools.house_answers import take_back
 from pipeline.tools.rerender import render_again
 from tests.museum import DATABASE, SILENT, edit, few_samples, in_common, kouros, on_the_floor, short_site, with_tables
 
@@ -213,7 +215,19 @@ def test_a_house_rule_that_moved_an_object_is_named(museum: Path) -> None:
     assert "A. &lt;b&gt;, 2031-05-12" in page
     assert texts(museum / "reports" / "index.html") == texts(museum / "reports" / "latest" / "news.html")
 
-    # Taken back, it is named as what holds no longer.
+    # Taken back at the desk, it is named with who took it back and why.
+    take_back(settings, 0, "B. <i>", date(2031, 6, 1), "the pads are gone")
+    changes = night(museum)
+    assert changes is not None
+    assert {one.object_number for one in changes.objects} == moved
+    said = sentences(changes, 100)
+    assert all("no longer the house rule for Gallery 2" in one for one in said)
+    assert all("taken back by B. <i>, 2031-06-01: the pads are gone" in one for one in said)
+    ended = settings.read_text(encoding="utf-8")
+    settings.write_text(ended.partition("taken_back_by")[0], encoding="utf-8")
+    night(museum)
+
+    # Taken out of the file, it is named as what holds no longer.
     settings.write_text(settings.read_text(encoding="utf-8").removesuffix(rule), encoding="utf-8")
     changes = night(museum)
     assert changes is not None
