@@ -199,7 +199,7 @@ def test_measurements_stay_through_later_imports(tmp_path: Path) -> None:
     first, second = read_inventory(engine)
     assert (first.title, first.clearance_m, first.friction, first.height_m) == ("New", 0.1, 0.5, 0.2)
     (problem,) = first.problems
-    assert "the museum's record says 0.2 m, the sheet s2.xlsx says 0.5 m, which is used" in problem.message
+    assert "the museum's record says 0.2, the sheet s2.xlsx says 0.5, which is used" in problem.message
     assert second == Item("2", "East")
     assert [info.kind for info in versions(engine)] == ["import", "sheet", "sheet", "import"]
     # Going back takes the sheets of later versions away as well.

@@ -140,8 +140,8 @@ def _otherwise(name: str) -> Clause:
     return say.SHEET_LENGTH if name.endswith("_m") else say.SHEET_MASS if name.endswith("_kg") else say.SHEET_OTHER
 
 
-def _said(value: Any) -> float | str:
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else str(value)
+def _said(name: str, value: Any) -> float | str:
+    return float(value) if name.endswith(("_m", "_kg")) else str(value)
 
 
 def _laid_over(item: Item, source: str, record: Mapping[str, Any]) -> Item:
@@ -156,7 +156,9 @@ def _laid_over(item: Item, source: str, record: Mapping[str, Any]) -> Item:
             sheet = sources.get(name, source)
             problems.append(
                 Problem(
-                    name, _otherwise(name)(recorded=_said(theirs), sheet=sheet, filled=_said(value)), say.SEE_WHICH()
+                    name,
+                    _otherwise(name)(recorded=_said(name, theirs), sheet=sheet, filled=_said(name, value)),
+                    say.SEE_WHICH(),
                 )
             )
     kept = [of for of in before["provenance"] if of["field"] not in fields]
