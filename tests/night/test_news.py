@@ -160,7 +160,7 @@ def test_each_kind_of_news_is_told_of_its_object(museum: Path) -> None:
                                       "decided": 1}  # fmt: skip
     assert sum(good["counts"].values()) == len(after)
     printed = kouros("diff", folder=museum).stdout
-    assert printed.index("Fixed: 1922.9 Amphora (clamped).") < printed.index("  worse:")
+    assert printed.index("Fixed: 1922.9 Amphora (clamped); said by Ann, ") < printed.index("  worse:")
     assert texts(render_again(load_settings(museum / "kouros.toml"), None).with_name("news.html")) == lines
 
     # What one motion does to all is one piece of news, with how many: as the two lists of objects have it.
