@@ -11,6 +11,7 @@ from pipeline.quantities import LENGTHS
 from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES
 from pipeline.records.run_sentences import SENTENCES
+from pipeline.report.by_hand import inches
 from pipeline.report.language import _, local, parted, said
 from pipeline.report.text import bare
 from pipeline.report.units import Units
@@ -32,6 +33,9 @@ SOURCES = ("judgement", "handbook tables of dry friction", "strengths: fixings.c
 
 CITED = frozenset({"rule", "case", "words", "aside", "shape", "number", "sheet", "recorded", "filled"})
 """Places of phrases for what the museum, or somebody else, wrote: it stays as it is."""
+
+RECORDED = frozenset({"recorded", "filled"})
+"""Places for what was measured: with inches in eighths, as it was read off."""
 
 REFUSAL = "refusal"
 """The place for a clause within a clause."""
@@ -138,7 +142,9 @@ def _clause(clause: str, units: Units) -> str:
 
 def _told(phrase: Clause, places: Mapping[str, str | Number], units: Units) -> str:
     written = {
-        name: _number(found, units)
+        name: inches(found.si[0], up=False)
+        if isinstance(found, Number) and name in RECORDED and found.unit == "m" and units.pounds
+        else _number(found, units)
         if isinstance(found, Number)
         else found
         if name in CITED
