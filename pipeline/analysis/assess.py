@@ -16,6 +16,7 @@ from pipeline.analysis.refinement import examine
 from pipeline.analysis.verdicts import Judgement, LevelMotions, capacity_of, judge
 from pipeline.models.unanchored import ABOUT
 from pipeline.records import Finding, Numerics, Scene
+from pipeline.records import run_sentences as say
 from pipeline.records.numerics import AUTO, CHART, VERDICTS
 
 logger = logging.getLogger(__name__)
@@ -130,5 +131,5 @@ def moving(finding: Finding, scene: Scene, levels: Sequence[LevelMotions]) -> Fi
     level = next(one for one in levels if one.name == finding.level)
     on_floor = best_furnished(level.motions, replace(shaken, loose=None))
     far = level.combined([movement(motion, shaken.loose.best) for motion in on_floor])
-    said = f"it moves up to {100.0 * far:.1f} cm on its floor." if far else "it stays where it stands."
-    return replace(finding, sentence=f"{finding.sentence} By the best estimates {said}")
+    said = say.MOVES_ON_FLOOR(away=far) if far else say.STAYS_ON_FLOOR()
+    return replace(finding, sentence=f"{finding.sentence} {said}")

@@ -96,6 +96,7 @@ _SAID: Mapping[str, Page] = {
     "/object/measured": saying.say_measured,
     "/object/picture": saying.say_picture,
     "/house/rule": saying.say_rule,
+    "/house/back": saying.say_back,
     "/errand/say": saying.say_errand,
     "/event/found": shaken.say_found,
     "/event/again": shaken.say_again,

@@ -30,7 +30,8 @@ from pipeline.report.language import said
 from pipeline.report.units import Units
 from pipeline.resources import small_text
 from pipeline.settings import Settings
-from pipeline.tools.house_answers import add_rules
+from pipeline.tools.decisions import WHY_LIMIT
+from pipeline.tools.house_answers import add_rules, take_back
 
 PATIENCE = 8.0
 """Seconds that somebody waits for another to have written."""
@@ -215,6 +216,34 @@ def house_rule(given: Mapping[str, str], who: str, when: date, units: Units) -> 
     except ValidationError as problem:
         first = problem.errors(include_url=False)[0]
         raise DeskError(str(first["msg"]).removeprefix("Value error, ")) from None
+
+
+def end_rule(config: Path, at: str, who: str, when: date, why: str) -> None:
+    """Write down that a house rule is taken back.
+
+    Parameters
+    ----------
+    config : Path
+        The settings.
+    at : str
+        Its place among the rules, from 0, as a form says it.
+    who, when, why : str, date, str
+        Who takes it back.
+
+    Raises
+    ------
+    DeskError
+        Where no reason is given, or there is no such rule.
+    SettingsError
+        As of `take_back`.
+    """
+    if not why.strip():
+        raise DeskError("write why: whoever stated the rule will ask")
+    if len(why) > WHY_LIMIT:
+        raise DeskError(f"a reason has at most {WHY_LIMIT} characters: say it shorter")
+    if not (at.isascii() and at.isdigit() and len(at) < 6):
+        raise DeskError("there is no such rule")
+    take_back(config, int(at), who, when, " ".join(why.split()))
 
 
 def state_rule(config: Path, rule: HouseRule) -> bool:

@@ -21,6 +21,8 @@ from pipeline.desk.words import lasting, name_told
 from pipeline.planning.efforts import EffortSpan
 from pipeline.quantities import sorting_key
 from pipeline.records import DecisionKind, Support, in_force
+from pipeline.report.assumed import assumed
+from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
 from pipeline.report.pages.chances import class_title
 from pipeline.report.pages.decided import Decided
@@ -99,7 +101,9 @@ def object_context(
         "facts": facts, "item": facts.item, "o": facts.view, "gallery": facts.gallery, "listed": listed,
         "notes": page_notes(facts.gallery.objects) if facts.gallery else None,
         "decisions": _decided(facts, run), "cells": cells(facts, run.units),
-        "recorded": _recorded(facts, run), "problem": problem, "typed": typed,
+        "recorded": _recorded(facts, run),
+        "doubts": [(name_told(p.field), assumed(p.message, run.units), assumed(p.remedy, run.units))
+                   for p in facts.item.problems], "problem": problem, "typed": typed,
         "section": section or query.get("open", ""), "saved": query.get("saved", ""),
         "measures": tuple((name, said(one.row.title)) for name, one in installable.items()), "measure": measure,
         "parameters": parameters(asked, facts, measure), "classes": run.class_titles,
@@ -151,6 +155,8 @@ def _recorded(facts: ObjectFacts, run: RunFacts) -> list[tuple[str, str, str]]:
     """Return the record of an object: what, its value in the reader's units, and who says so."""
     item, notes = facts.item, {of.field: of for of in facts.item.provenance}
     texts = ("object_name", "classification", "medium", "dimensions", "gallery", "case")
+    # As the cells take them: eighths of an inch, not 12.4 for 12 3/8.
+    written = by_hand(run.units)
     out = [(name_told(name), str(getattr(item, name)), "") for name in texts if getattr(item, name)]
     for one in measurables():
         value = getattr(item, one.field, None)
@@ -159,7 +165,7 @@ def _recorded(facts: ObjectFacts, run: RunFacts) -> list[tuple[str, str, str]]:
         shown = (
             word_told(one.field, value)
             if vocabulary(one.field)
-            else run.units.text(value, "" if one.unit == "-" else one.unit)
+            else written(one.field, value, "" if one.unit == "-" else one.unit)
         )
         of = notes.get(one.field)
         out.append((labels()[one.field], shown, "; ".join(filter(None, (of.written, of.note))) if of else ""))
@@ -327,7 +333,7 @@ def house(asked: Asked) -> DeskAnswer:
 
 def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] | None = None) -> dict[str, Any]:
     """Return what the page of house rules shows."""
-    run = asked.site.run
+    run, rules = asked.site.run, asked.site.workspace.settings.house
     # What the form does not offer is not chosen: it would show "all", and count none.
     offered = {"class": run.classes, "gallery": run.galleries, "states": STATED}
     given = {name: asked.query.get(name, "") for name in offered}
@@ -337,7 +343,9 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
              and given["gallery"] in ("", one.gallery)]  # fmt: skip
     return {
         "asked": run.rule_questions,
-        "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house],
+        "rules": [(at, *_rule_words(rule, run.units)) for at, rule in enumerate(rules) if rule.holds],
+        "ended": [(*_rule_words(rule, run.units), rule.taken_back_by, rule.taken_back_on, rule.taken_back_why)
+                  for rule in rules if not rule.holds],
         "classes": sorted(run.classes, key=class_title), "class_told": class_title, "word_told": word_told,
         "counts": run.classes,
         "galleries": run.gallery_names, "vocabularies": VOCABULARIES, "quantities": QUANTITIES,

@@ -2,7 +2,6 @@
 
 from pipeline.collection.hand_cell import of_hand
 from pipeline.errors import InputError
-from pipeline.quantities import MASSES
 from pipeline.report.units import Units, significant
 
 
@@ -11,14 +10,12 @@ def cell_unit(unit: str, units: Units) -> str:
 
     unit : SI, or "-"
     """
-    if unit == "kg":
-        return "lb" if units.length in ("in", "ft") else "kg"
     return units.symbol(unit)
 
 
 def _per(unit: str, units: Units) -> float:
     """Return how much of the unit of Kouros is in one of the cell's."""
-    return MASSES[cell_unit(unit, units)] if unit == "kg" else 1.0 / units.factor(unit)
+    return 1.0 / units.factor(unit)
 
 
 def read_number(text: str, unit: str, units: Units) -> tuple[float, str]:

@@ -167,12 +167,15 @@ class ObjectDesk:
         return view, gallery, found.assessments[0], found.wishes or ()
 
 
+_PLAIN_SIZES = ("height_m", "width_m", "depth_m", "mass_kg")
+
+
 def cells(facts: ObjectFacts, units: Units) -> list[CellView]:
-    """Return what may be filled in of an object, what is worth most first."""
+    """Return what may be filled in of an object, what is worth most first, then what a tape and a scale tell."""
     worth = {w.field: w for w in facts.wishes if not w.settles_nothing}
-    order = list(worth)
+    order = [*worth, *(name for name in _PLAIN_SIZES if name not in worth)]
     found = [_cell(one, facts.item, units, one.field in worth) for one in measurables()]
-    return sorted(found, key=lambda cell: order.index(cell.field) if cell.wished else len(order))
+    return sorted(found, key=lambda cell: order.index(cell.field) if cell.field in order else len(order))
 
 
 def _cell(one: Measurable, item: Item, units: Units, wished: bool) -> CellView:

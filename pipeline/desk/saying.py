@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 
 from pipeline.desk.asking import Asked, DeskAnswer, address
-from pipeline.desk.entering import CellsError, enter, house_rule, rules_version, state_rule, writing
+from pipeline.desk.entering import CellsError, end_rule, enter, house_rule, rules_version, state_rule, writing
 from pipeline.desk.errands import say
 from pipeline.desk.errors import DeskError, NotThereError, StaleError
 from pipeline.desk.looking import errand_context, errand_named, house_context, object_context
@@ -123,6 +123,20 @@ def say_rule(asked: Asked) -> DeskAnswer:
         context = house_context(asked, problem=_words(problem), typed=form)
         return DeskAnswer("house.html", context, _status(problem))
     return DeskAnswer(to=address("/house", saved="rule" if added else "known"))
+
+
+def say_back(asked: Asked) -> DeskAnswer:
+    """Take a house rule back: it stays in the settings, with who took it back, when and why."""
+    form = asked.form
+    try:
+        signed(asked)
+        with writing(asked.site.workspace.settings):
+            if form.get("version") != rules_version(asked.site.config):
+                raise StaleError(STALE)
+            end_rule(asked.site.config, form.get("at", ""), asked.name, datetime.now(UTC).date(), form.get("why", ""))
+    except KourosError as problem:
+        return DeskAnswer("house.html", house_context(asked, problem=_words(problem), typed=form), _status(problem))
+    return DeskAnswer(to=address("/house", saved="back"))
 
 
 def say_errand(asked: Asked) -> DeskAnswer:

@@ -12,6 +12,7 @@ from pipeline.models.common import NO_HISTORY, largest_push, largest_speed
 from pipeline.models.flips import FELL, FELL_AT, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Columns, Excitation, Harm, Scene
+from pipeline.records import run_sentences as say
 
 HALF_WIDTH = Quantity("half_width", "m", "from the centre of gravity to the edge towards +axis", 0.0, exclusive=True)
 HALF_WIDTH_OTHER = Quantity(
@@ -215,25 +216,21 @@ def say_screen(row: Mapping[str, float], parameters: Mapping[str, float]) -> str
         Of that body.
     """
     slope = narrow_slope(parameters)
-    rocks = "rocks" if row["uplift_ratio"] > 1.0 else "does not rock"
-    falls = "overturns" if row["overturned"] else "does not overturn"
-    return (
-        f"A_max/g = {row['uplift_ratio'] * slope:.2f} against B/H' = {slope:.2f}: {rocks}. "
-        f"V_max is {row['velocity_ratio']:.2g} times 10 B/sqrt(H'): {falls}."
-    )
+    lifts = say.LIFTS if row["uplift_ratio"] > 1.0 else say.STAYS_DOWN
+    falls = say.OVERTURNS if row["overturned"] else say.STAYS_UP
+    return f"{lifts(push=row['uplift_ratio'] * slope, slope=slope)} {falls(ratio=row['velocity_ratio'])}"
 
 
 def falls_over(row: Mapping[str, float]) -> tuple[str, str]:
     """Return what a body does that falls over, in a word and in a sentence."""
-    return OVERTURNS, f"In this motion it falls over after {row['overturning_time']:.1f} s."
+    return OVERTURNS, say.FALLS_OVER(time=row["overturning_time"])
 
 
 def comes_back(row: Mapping[str, float]) -> str:
-    """Return in words how far a body tips that comes back."""
-    return (
-        f"It comes back: it tips by at most {100.0 * row['rotation_ratio']:.0f} % of its critical angle and lands "
-        f"{row['impacts']:.0f} times"
-    )
+    """Return in a sentence how far a body tips that comes back, and where it ends if it has moved."""
+    if "residual" in row:
+        return say.COMES_BACK_MOVED(share=row["rotation_ratio"], times=row["impacts"], away=row["residual"])
+    return say.COMES_BACK(share=row["rotation_ratio"], times=row["impacts"])
 
 
 UNHARMED = "Rocking itself does not harm an object of its kind; it fails if it falls over."

@@ -180,7 +180,7 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
 def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tuple[str, str]:
     if row["overturned"]:
         return falls_over(row)
-    return (ROCKS, f"{comes_back(row)}.") if row["rotation_ratio"] > 0.0 else ("", "")
+    return (ROCKS, comes_back(row)) if row["rotation_ratio"] > 0.0 else ("", "")
 
 
 def _applies(scene: Scene) -> str:

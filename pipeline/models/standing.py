@@ -90,6 +90,7 @@ from pipeline.models.sharing import shared
 from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Estimate, Excitation, Harm, Model, Origin, Scene, Support, Trials
+from pipeline.records import run_sentences as say
 
 SLIDES = "slides"
 
@@ -312,7 +313,7 @@ def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
 def _say(row: Mapping[str, float], parameters: Mapping[str, float]) -> str:
     slope, friction = narrow_slope(parameters), parameters["friction_static"]
     slides = friction < min(slope, row["uplift_ratio"] * slope)
-    held = f" But its friction of {friction:.2f} lets it slide before it tips." if slides else ""
+    held = f" {say.SLIDES_BEFORE(friction=friction)}" if slides else ""
     return say_screen(row, parameters) + held
 
 
@@ -364,9 +365,9 @@ def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tupl
     if row["overturned"]:
         return falls_over(row)
     if row["rotation_ratio"] > 0.0:
-        return ROCKS, f"{comes_back(row)}; its base ends {100.0 * row['residual']:.1f} cm from where it stood."
+        return ROCKS, comes_back(row)
     if row["displacement"] > 0.0:
-        return SLIDES, f"It does not tilt; it slides up to {100.0 * row['displacement']:.1f} cm."
+        return SLIDES, say.SLIDES_ONLY(away=row["displacement"])
     return "", ""
 
 

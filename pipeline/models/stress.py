@@ -30,6 +30,7 @@ from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.models.oscillator import OSCILLATES, PROMISED
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Item, Model, Scene, Support, Trials
+from pipeline.records import run_sentences as say
 
 RIGID_PERIOD = 0.06
 """Period [s] up to which ASCE 7 calls a component rigid."""
@@ -172,8 +173,8 @@ def _bound_flexible(motion: Excitation, parameters: Mapping[str, Array]) -> Boun
 
 def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
     if np.isnan(row["tilt"]):
-        return "Tilt test: the peak acceleration is 1 g or more; no tilt reproduces it."
-    return f"Tilt test: would it break if it were tilted {row['tilt']:.0f} degrees?"
+        return say.NO_TILT()
+    return say.TILT_TEST(tilt=row["tilt"])
 
 
 def _mark(frequency: float, parameters: Mapping[str, float], tension: float) -> tuple[str, float, float] | None:

@@ -38,6 +38,7 @@ from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.models.sharing import shared
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Hanging, Model, Scene, Support, Trials
+from pipeline.records import run_sentences as say
 
 CHANDELIER = 1.4
 """The paper's factor on the undamped two-dimensional result for an object that swings in all directions."""
@@ -161,7 +162,7 @@ def _screen_3d(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
 
 
 def _say_3d(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
-    return f"1.4 times the undamped swing in one plane: {100.0 * row['displacement']:.0f} cm."
+    return say.SWING_UNDAMPED(swing=row["displacement"])
 
 
 def _refuse_lost(parameters: Mapping[str, float], results: Array) -> None:

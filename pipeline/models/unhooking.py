@@ -49,6 +49,7 @@ from pipeline.kernels.hung_plate import hung_plate_batch
 from pipeline.models.common import N_, NO_VERTICAL, broadcast, grid, lift_ratios, needs, shaken
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Columns, Excitation, Hanging, Harm, Model, Scene, Support, Trials
+from pipeline.records import run_sentences as say
 
 DOUBT = 0.01
 """Share of the lift from which the difference of two steps says that it hangs on the integration."""
@@ -156,8 +157,7 @@ def _applies(scene: Scene) -> str:
 def _outcome(row: Mapping[str, float], parameters: Mapping[str, float]) -> tuple[str, str]:
     if row["slap"] <= 0.0 or parameters["hooks_open"] <= 0.0:
         return "", ""
-    told = f"Its lower edge opens by {np.degrees(row['opening']):.0f} degrees and strikes the wall at"
-    return "", f"{told} {100.0 * row['slap']:.0f} cm/s."
+    return "", say.OPENS(angle=float(np.degrees(row["opening"])), speed=row["slap"])
 
 
 UNHOOKING = Model(

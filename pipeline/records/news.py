@@ -102,6 +102,8 @@ class Ruled:
         What it is for: rows of tables/classes.csv, and the museum's own galleries, numbers and materials.
     states : mapping of str to str
         What it states, by the keys of kouros.toml; "" for what is a number.
+    back : tuple of str
+        Who took it back, when (ISO 8601) and why; empty where nobody did.
     """
 
     new: bool
@@ -110,6 +112,7 @@ class Ruled:
     classes: tuple[str, ...] = ()
     about: tuple[str, ...] = ()
     states: Mapping[str, str] = field(default_factory=dict)
+    back: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from typing import Protocol
 
 from pipeline.quantities import LENGTHS
 
-SCALES = {**LENGTHS, "%": 0.01, "MPa": 1e6, "GPa": 1e9}
+SCALES = {**LENGTHS, "%": 0.01, "cm/s": 0.01, "MPa": 1e6, "GPa": 1e9}
 """What a number in the unit is multiplied by to be in SI; units that are not here are SI."""
 
 _PLAIN = "-"

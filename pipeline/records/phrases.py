@@ -41,7 +41,7 @@ FRICTION = Clause("friction: {friction:-}, {tables} for {material} on {surface}"
 NOT_MEASURED = Clause("not measured")
 NO_HARM_BY_ROCKING = Clause("rocking itself is not taken to harm it, assumed for: {told}")
 
-MASS_OF_FRAMED = Clause("mass: {mass:kg} for each square metre of a framed work, assumed")
+MASS_OF_FRAMED = Clause("mass: {mass:kg/m2} of the face of a framed work, assumed")
 MASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed")
 MASS_OF_CLASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline ({aside}), assumed")
 MASS_OF_METAL = Clause(
@@ -130,6 +130,12 @@ NO_ISOLATOR_UNDER = Clause(
 NO_ISOLATOR_FOR_ALL = Clause(
     "no isolator of the catalogue passes on little enough within its stroke for all {objects:-} objects of its case"
 )
+
+# What stands in the record beside a sheet that was filled in.
+SHEET_LENGTH = Clause("the museum's record says {recorded:m~6}, the sheet {sheet} says {filled:m~6}, which is used")
+SHEET_MASS = Clause("the museum's record says {recorded:kg~6}, the sheet {sheet} says {filled:kg~6}, which is used")
+SHEET_OTHER = Clause("the museum's record says {recorded}, the sheet {sheet} says {filled}, which is used")
+SEE_WHICH = Clause("see which is right: mend the museum's record, or fill in a new sheet")
 
 PHRASES = tuple(
     sorted((one for one in globals().values() if isinstance(one, Clause)), key=lambda one: one.letters, reverse=True)

@@ -6,23 +6,56 @@ See `pipeline.records.phrase`: a run stores both in English.
 import re
 from collections.abc import Mapping
 
+from pipeline.analysis.classify import object_classes
 from pipeline.quantities import LENGTHS
 from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES
+from pipeline.records.run_sentences import SENTENCES
+from pipeline.report.by_hand import inches
 from pipeline.report.language import _, local, parted, said
 from pipeline.report.text import bare
 from pipeline.report.units import Units
 
-CITED = frozenset({"rule", "case", "words", "aside", "shape", "number"})
+TABLES = tuple(
+    f"{name}.csv"
+    for name in (
+        "bending", "classes", "contacts", "damping", "efforts", "fills", "fixings", "friction", "furniture",
+        "hangings", "isolators", "materials", "measures", "mounts", "proportions", "slender", "stakes",
+        "usual_furniture", "usual_hangings",
+    )
+)  # fmt: skip
+"""Files that sources name; a catalogue says what each is about."""
+
+SOURCES = ("judgement", "handbook tables of dry friction", "strengths: fixings.csv", "classes by judgement",
+           "limits by judgement", "limit by judgement", "the measure itself",
+           "share of the footing by judgement")  # fmt: skip
+"""What sources say in one clause, besides what they cite."""
+
+CITED = frozenset({"rule", "case", "words", "aside", "shape", "number", "sheet", "recorded", "filled"})
 """Places of phrases for what the museum, or somebody else, wrote: it stays as it is."""
+
+RECORDED = frozenset({"recorded", "filled"})
+"""Places for what was measured: with inches in eighths, as it was read off."""
 
 REFUSAL = "refusal"
 """The place for a clause within a clause."""
 
+MASSES_OF = frozenset({"kg", "kg/m2", "kg/m3"})
+"""Units of masses, of an area and of a volume."""
+
+_SENTENCE = re.compile(r"(?<=[.!?]) ")
 _PLACE = re.compile(r"\{(\w+)\}")
-_PRINTED = re.compile(r"Table (\d+)")
+_PRINTED = re.compile(r"\bTable (\d+)\b(?!-)")
+_TABLE = re.compile(r"(?P<file>\b[a-z_]+\.csv)(?:, (?P<row>\w[\w ]*\w))?")
+_JUDGED = re.compile(r"(\A|; |[(])judgement\b")
+_RULE = re.compile(
+    r"""(?P<name>.*?):[ ](?P<why>.*?)(?:[ ]\((?:named[ ](?P<word>['"].*['"])|(?P<cited>AAT[ ]\w+))\))?"""
+    r"""(?P<open>;[ ]its[ ]record[ ]names[ ]no[ ]class"""
+    r"""(?:,[ ](?P<kind>\w+)[ ]is[ ]the[ ]likeliest[ ]\((?P<chance>[\d.]+)\))?)?""",
+    re.DOTALL | re.VERBOSE,
+)
 _THIN = "\u202f"
-_SIGNS = {"": "", "°": "°", "%": "\u00a0%", "kg/m3": f"{_THIN}kg/m³"}
+_SIGNS = {"": "", "°": "°", "%": "\u00a0%", "kg/m2": f"{_THIN}kg/m²", "kg/m3": f"{_THIN}kg/m³"}
 
 
 def assumed(text: str, units: Units) -> str:
@@ -33,6 +66,22 @@ def assumed(text: str, units: Units) -> str:
     return parted(_clause(clause, units) for clause in text.split("; "))
 
 
+def happening(text: str, units: Units) -> str:
+    """Say what the sentences of a finding say, as the run stored them: with numbers of a motion, or placeholders."""
+    told: list[str] = []
+    plain: list[str] = []
+    for part in _SENTENCE.split(text):
+        found = next(((one, places) for one in SENTENCES if (places := one.places(part)) is not None), None)
+        if found is None:
+            plain.append(part)
+            continue
+        # What stands together in a catalogue is looked up together.
+        told += [said(" ".join(plain))] if plain else []
+        told.append(_told(*found, units))
+        plain = []
+    return " ".join([*told, said(" ".join(plain))] if plain else told)
+
+
 def rejected(text: str, units: Units) -> str:
     """Say which measure was passed over and why, as the run stored it: its title, a colon, and clauses."""
     title, colon, why = text.partition(": ")
@@ -41,9 +90,46 @@ def rejected(text: str, units: Units) -> str:
 
 def rule_words(rule: str) -> str:
     """Return by which rule an object is of its class: the rule's name, and in the reader's language why."""
-    name, colon, why = rule.partition(": ")
-    told, bracket, found = why.rpartition(" (")
-    return f"{name}{colon}{said(told)}{bracket}{found}" if bracket else f"{name}{colon}{said(why)}"
+    found = _RULE.fullmatch(rule)
+    if found is None:
+        return rule
+    told = f"{found['name']}: {said(found['why'])}"
+    if found["word"]:
+        told += " (" + _("named %(word)s") % {"word": found["word"]} + ")"
+    elif found["cited"]:
+        told += f" ({found['cited']})"
+    if found["open"]:
+        told = parted((told, _("its record names no class")))
+    if found["kind"]:
+        likeliest = {
+            "kind": class_words(found["kind"]),
+            "chance": local(found["chance"]),
+        }
+        told += ", " + _("%(kind)s is the likeliest (%(chance)s)") % likeliest
+    return told
+
+
+def sourced(text: str) -> str:
+    """Return where a number or a measure comes from, its tables by their names in the reader's language.
+
+    What is cited, and the reasons of a judgement, stay as they are written.
+    """
+    text = "; ".join(map(said, text.split("; ")))
+    text = _TABLE.sub(_table, text)
+    text = _JUDGED.sub(lambda one: one[1] + _("judgement"), text)
+    return _PRINTED.sub(lambda one: _("Table {number}").format(number=one[1]), text)
+
+
+def _table(found: re.Match[str]) -> str:
+    row = found["row"]
+    told = said(found[1])
+    return told if row is None else f"{told}, {class_words(row)}"
+
+
+def class_words(row: str) -> str:
+    """Say what a class is called, or else a material."""
+    title = object_classes().get(row, row)
+    return _words(title[:1].lower() + title[1:])
 
 
 def _clause(clause: str, units: Units) -> str:
@@ -56,7 +142,9 @@ def _clause(clause: str, units: Units) -> str:
 
 def _told(phrase: Clause, places: Mapping[str, str | Number], units: Units) -> str:
     written = {
-        name: _number(found, units)
+        name: inches(found.si[0], up=False)
+        if isinstance(found, Number) and name in RECORDED and found.unit == "m" and units.pounds
+        else _number(found, units)
         if isinstance(found, Number)
         else found
         if name in CITED
@@ -70,9 +158,10 @@ def _told(phrase: Clause, places: Mapping[str, str | Number], units: Units) -> s
 
 
 def _number(found: Number, units: Units) -> str:
-    if found.unit in LENGTHS:
+    of = "m" if found.unit in LENGTHS else "m/s" if found.unit == "cm/s" else found.unit
+    if of in ("m", "m/s") or (of in MASSES_OF and units.pounds):
         value, *ends = found.si
-        return units.text(value, "m") + (f" ({units.bare(ends[0], ends[1], 'm')})" if ends else "")
+        return units.text(value, of) + (f" ({units.bare(ends[0], ends[1], of)})" if ends else "")
     best, *span = (local(text.replace("-", "−")) for text in found.texts)
     sign = _SIGNS.get(found.unit, f"{_THIN}{found.unit}")
     return best + sign + (" (" + _("%(low)s to %(high)s") % {"low": span[0], "high": span[1]} + ")" if span else "")

@@ -29,7 +29,7 @@ def by_hand(units: Units) -> Write:
     units : Units
         The reader's.
     """
-    pounds = units.length in ("in", "ft")
+    pounds = units.pounds
     mass, arm, far = (MASSES["lb"], LENGTHS["ft"], "1 ft") if pounds else (1.0, 1.0, f"1{_THIN}m")
     unit_of_mass = "lb" if pounds else "kg"
 

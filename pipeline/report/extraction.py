@@ -23,6 +23,8 @@ from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import UNTOLD_ISOLATOR, Anchorage, Item, Support
 from pipeline.records.phrases import PHRASES
+from pipeline.records.run_sentences import SENTENCES
+from pipeline.report.assumed import SOURCES, TABLES
 from pipeline.report.text import bare
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed
@@ -87,7 +89,8 @@ def _of_measures() -> Iterator[str]:
 
 def _of_assumptions() -> Iterator[str]:
     """Yield the phrases of what is assumed, and what may stand in their places."""
-    yield from (phrase.asked for phrase in PHRASES)
+    yield from (phrase.asked for phrase in (*PHRASES, *SENTENCES))
+    yield from (*TABLES, *SOURCES)
     yield from (row["title"] for row in table("contacts"))
     yield from assumed().materials
     pairs = ((row.object_material, row.surface_material) for row in assumed().friction)

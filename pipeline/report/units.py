@@ -6,7 +6,7 @@ from functools import lru_cache
 from math import floor, inf, isfinite, isnan, log10
 from string import Formatter
 
-from pipeline.quantities import LENGTHS, G
+from pipeline.quantities import LENGTHS, MASSES, G
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, local
 
@@ -21,6 +21,9 @@ _FIXED: dict[str, tuple[str, float]] = {
 }
 _RATIOS = ("-", "")
 _POWERS = {"m": ("", 1), "m2": ("²", 2), "m3": ("³", 3), "m/s": ("/s", 1)}
+_MASS_PER = {"kg": ("lb", 0), "kg/m2": ("lb/ft²", 2), "kg/m3": ("lb/ft³", 3)}
+"""Masses for who thinks in feet: the unit, and of which power of a foot."""
+_METRIC = {"kg/m2": "kg/m²", "kg/m3": "kg/m³"}
 _THIN = "\u202f"
 
 
@@ -66,7 +69,8 @@ def _digits(value: float) -> str:
 class Units:
     """How numbers are written for one reader.
 
-    length : "cm" (default), "mm", "m", "in" or "ft"; areas, volumes and velocities follow it
+    length : "cm" (default), "mm", "m", "in" or "ft"; areas, volumes and velocities follow it, and masses are in pounds
+             where it is in or ft
     raises : ReportError for another unit of length
     """
 
@@ -76,10 +80,15 @@ class Units:
         if self.length not in LENGTHS:
             raise ReportError(f"units: length {self.length!r} is not known; use one of {', '.join(LENGTHS)}")
 
+    @property
+    def pounds(self) -> bool:
+        """Whether masses are in pounds."""
+        return self.length in ("in", "ft")
+
     def symbol(self, unit: str) -> str:
         """Return the reader's unit for an SI unit: "cm" for "m", "g" for "m/s2", "" for a ratio.
 
-        A unit without a translation (s, Hz, kg) is written as it is.
+        A unit without a translation (s, Hz) is written as it is.
         """
         return _shown(self.length, unit)[0]
 
@@ -157,7 +166,10 @@ def _shown(length: str, unit: str) -> tuple[str, float]:
     if unit in _POWERS:
         suffix, power = _POWERS[unit]
         return length + suffix, 1.0 / LENGTHS[length] ** power
-    return _FIXED.get(unit, (unit, 1.0))
+    if unit in _MASS_PER and length in ("in", "ft"):
+        symbol, power = _MASS_PER[unit]
+        return symbol, LENGTHS["ft"] ** power / MASSES["lb"]
+    return _FIXED.get(unit, (_METRIC.get(unit, unit), 1.0))
 
 
 @lru_cache(maxsize=4096)

@@ -152,15 +152,23 @@ class _Comparison:
         # A run of an earlier version does not say which it had.
         if None in rules or rules[0] == rules[1]:
             return {}
+        # One that was taken back stays in the list, and says by whom.
+        back = {(rule["words"], rule["source"], str(rule["states"])): rule["back"] for rule in rules[1]
+                if rule.get("back")}  # fmt: skip
+        rules = [[rule for rule in some if not rule.get("back")] for some in rules]
         found = {}
         for number, scene in self._differing_scenes[1].items():
             sides = (self._differing_scenes[0][number], scene)
             before, after = (
-                [rule for rule in some if rests_on(side, rule["words"], rule["source"])]
+                [rule | {"back": []} for rule in some if rests_on(side, rule["words"], rule["source"])]
                 for some, side in zip(rules, sides, strict=True)
             )
             told = [ruled_of(rule, new=True) for rule in after if rule not in before]
-            told += [ruled_of(rule, new=False) for rule in before if rule not in after]
+            told += [
+                ruled_of(rule | {"back": back.get((rule["words"], rule["source"], str(rule["states"])), [])}, new=False)
+                for rule in before
+                if rule not in after
+            ]
             if told:
                 found[number] = tuple(told)
         return found
@@ -275,7 +283,8 @@ class _Comparison:
 def ruled_of(rule: Mapping[str, Any], *, new: bool) -> Ruled:
     """Return a house rule as news tells it, from what a run keeps of it."""
     classes, about = (tuple(map(str, rule[name])) for name in ("classes", "about"))
-    return Ruled(new, rule["who"], rule["date"], classes, about, dict(rule["states"]))
+    back = tuple(map(str, rule.get("back", ())))
+    return Ruled(new, rule["who"], rule["date"], classes, about, dict(rule["states"]), back)
 
 
 def _verdict(text: str | None) -> Verdict | None:

@@ -8,12 +8,13 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
+import tomlkit
 from pydantic import ValidationError
 
 from pipeline.analysis.classify import object_classes
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.house.questions import VOCABULARIES, RuleQuestion
-from pipeline.analysis.house.rule import QUANTITIES, HouseRule
+from pipeline.analysis.house.rule import QUANTITIES, TAKEN_BACK, HouseRule
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.sources.xlsx import read_sheet as rows_of_sheet
@@ -193,7 +194,8 @@ def add_rules(config: Path, rules: tuple[HouseRule, ...], *, dry_run: bool = Fal
         Nothing is written then.
     """
     known = load_settings(config).house
-    wanted = tuple(rule for rule in (_without(rule, known) for rule in rules) if rule is not None)
+    holding = tuple(rule for rule in known if rule.holds)
+    wanted = tuple(rule for rule in (_without(rule, holding) for rule in rules) if rule is not None)
     if not wanted:
         return ""
     try:
@@ -207,10 +209,52 @@ def add_rules(config: Path, rules: tuple[HouseRule, ...], *, dry_run: bool = Fal
     except tomllib.TOMLDecodeError as problem:
         raise SettingsError(f"{config}: rules cannot be added at its end ({problem}); add by hand: {added}") from None
     if not dry_run:
-        with replacing(config) as aside:
-            aside.write_text(text, encoding="utf-8")
-            shutil.copymode(config, aside)
+        _write(config, text)
     return added
+
+
+def take_back(config: Path, at: int, who: str, when: date, why: str) -> None:
+    """Write beside a house rule of kouros.toml that it was taken back; it stays there, with who said it.
+
+    Parameters
+    ----------
+    config : Path
+        The settings.
+    at : int
+        Its place among the rules, from 0.
+    who, when, why : str, date, str
+        Who takes it back.
+
+    Raises
+    ------
+    SettingsError
+        Where there is no such rule, somebody took it back already, or the file is written in another way than as
+        tables [[house]].  Nothing is written then.
+    """
+    known = load_settings(config).house
+    if not 0 <= at < len(known):
+        raise SettingsError(f"{config}: there is no rule {at + 1}; it has {len(known)}")
+    if not known[at].holds:
+        raise SettingsError(f"{config}: [[house]] {at + 1} was taken back by {known[at].taken_back_by} already")
+    given = known[at].plain() | dict(zip(TAKEN_BACK, (who, when, why), strict=True))
+    try:
+        wanted = HouseRule(**given)
+    except ValidationError as problem:
+        raise SettingsError(str(problem.errors(include_url=False)[0]["msg"]).removeprefix("Value error, ")) from None
+    document = tomlkit.parse(small_text(config))
+    table = document["house"][at]
+    for name in TAKEN_BACK:
+        table[name] = getattr(wanted, name)
+    text = tomlkit.dumps(document)
+    if tuple(HouseRule(**one) for one in tomllib.loads(text)["house"]) != (*known[:at], wanted, *known[at + 1 :]):
+        raise SettingsError(f"{config}: [[house]] {at + 1} cannot be changed as it is written; change it by hand")
+    _write(config, text)
+
+
+def _write(config: Path, text: str) -> None:
+    with replacing(config) as aside:
+        aside.write_text(text, encoding="utf-8")
+        shutil.copymode(config, aside)
 
 
 def _without(rule: HouseRule, known: tuple[HouseRule, ...]) -> HouseRule | None:

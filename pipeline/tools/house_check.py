@@ -39,7 +39,8 @@ def look_at_house_rules(workspace: Workspace, inventory: Sequence[Item]) -> tupl
     matched = Counter(at for _, effect in effects for at in effect.matched)
     used = Counter(at for _, effect in effects for at in effect.used)
     told = [f"{house.named(at)} matches {counted(times, 'object')}" for at, times in sorted(matched.items())]
-    doubts = [_idle(house, at, matched[at], inventory) for at in range(len(house.rules)) if not used[at]]
+    doubts = [_idle(house, at, matched[at], inventory) for at, rule in enumerate(house.rules)
+              if rule.holds and not used[at]]  # fmt: skip
     against: dict[int, list[str]] = {}
     ties: dict[str, list[str]] = {}
     for item, effect in effects:

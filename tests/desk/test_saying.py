@@ -161,6 +161,40 @@ def test_a_house_rule_goes_into_the_settings_once(visitor: Visitor, museum: Path
     assert (span.low, span.best) == pytest.approx((0.0127, 0.0254))
 
 
+def test_a_house_rule_is_taken_back_with_who_when_and_why(visitor: Visitor, museum: Path) -> None:
+    config = museum / "kouros.toml"
+    before = config.read_text(encoding="utf-8") + '\n# ours\n[[house]] # the first\nnumber = "1.*"\nfriction = 0.4\n'
+    before += 'said_by = "A. Smith"\nsaid_on = 2031-05-12\n\n[[house]]\nclass = "framed"\nhanging = "cleat"\n'
+    before += 'said_by = "A. Smith"\nsaid_on = 2031-05-12\n'
+    config.write_text(before, encoding="utf-8")
+    page = visitor.get("/house")
+    keys = {name: page.hidden("/house/back", name) for name in ("token", "version")}
+    for wrong in ({"at": "7", "why": "x"}, {"at": "-1", "why": "x"}, {"at": "0", "why": " "}, {"at": "x", "why": "x"}):
+        assert visitor.post("/house/back", **keys, **wrong, who="B. Rossi").status == 422
+    assert visitor.post("/house/back", **keys, at="0", why="x", who="").status == 422
+    assert config.read_text(encoding="utf-8") == before
+    done = visitor.post("/house/back", **keys, at="0", why='The "pads" <b>\nare gone', who="B. Rossi")
+    visitor.follow(done)
+    first, second = load_settings(config).house
+    assert not first.holds
+    assert (first.taken_back_by, first.taken_back_why) == ("B. Rossi", 'The "pads" <b> are gone')
+    assert second.holds
+    # Nothing else of the file has changed, not a comment.
+    lines = config.read_text(encoding="utf-8").splitlines()
+    assert [line for line in lines if not line.startswith("taken_back_")] == before.splitlines()
+    shown = visitor.get("/house").page
+    assert 'The "pads" <b> are gone' in shown.text_content()
+    assert len(shown.xpath("//form[@action='/house/back']")) == 1
+    # Two people on one rule: the second is told.
+    assert visitor.post("/house/back", **keys, at="0", why="again", who="C. Doe").status == 409
+    keys["version"] = visitor.get("/house").hidden("/house/back", "version")
+    assert visitor.post("/house/back", **keys, at="0", why="again", who="C. Doe").status == 422
+    # What was taken back may be stated again, or something else in its place.
+    rule = {"states": "hanging", "class": "framed", "word": "cleat", "who": "A. Smith"}
+    visitor.post("/house/rule", **keys, **rule)
+    assert len(load_settings(config).house) == 2
+
+
 def picture(size: tuple[int, int] = (64, 48), kind: str = "JPEG") -> bytes:
     out = BytesIO()
     exif = Image.Exif()

@@ -297,4 +297,4 @@ def test_screen_sentence_of_a_body_with_two_edges_names_the_true_acceleration() 
         parameters = {"half_width": b1, "half_width_other": b2, "cg_height": 1.0}
         row = respond("rocking", motion, fidelity="screen", **parameters).iloc[0]
         said = {"uplift_ratio": row["uplift_ratio"], "velocity_ratio": 0.1, "overturned": 0.0}
-        assert ROCKING.say_screen(said, parameters).startswith("A_max/g = 0.35 against B/H' = 0.10")
+        assert ROCKING.say_screen(said, parameters).startswith("A_max/g = 0.35 against B/H' = 0.1:")

@@ -6,6 +6,7 @@ import csv
 import json
 import re
 from collections import Counter
+from datetime import date
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from pipeline.records import DecisionKind, NewsKind, RunChanges
 from pipeline.report.pages.news import sentences
 from pipeline.settings import load_settings, template
 from pipeline.tools.decisions import Wish, decide
+from pipeline.tools.house_answers import take_back
 from pipeline.tools.rerender import render_again
 from tests.museum import DATABASE, SILENT, edit, few_samples, in_common, kouros, on_the_floor, short_site, with_tables
 
@@ -131,7 +133,7 @@ def test_each_kind_of_news_is_told_of_its_object(museum: Path) -> None:
         for brief, lists in ((one.before, before), (one.after, after)):
             assert (None if brief is None else (brief.state, brief.band)) == lists.get(number), number
     said = sentences(changes, 100)
-    assert "Fixed: 1922.9 Amphora (clamped)." in said
+    assert any(one.startswith("Fixed: 1922.9 Amphora (clamped); said by Ann, 20") for one in said)
     assert (
         "Worse: 5.1 Vase: was fine, is in danger (its record changed: height, width, depth): check its sizes first."
         in said
@@ -158,7 +160,7 @@ def test_each_kind_of_news_is_told_of_its_object(museum: Path) -> None:
                                       "decided": 1}  # fmt: skip
     assert sum(good["counts"].values()) == len(after)
     printed = kouros("diff", folder=museum).stdout
-    assert printed.index("Fixed: 1922.9 Amphora (clamped).") < printed.index("  worse:")
+    assert printed.index("Fixed: 1922.9 Amphora (clamped); said by Ann, ") < printed.index("  worse:")
     assert texts(render_again(load_settings(museum / "kouros.toml"), None).with_name("news.html")) == lines
 
     # What one motion does to all is one piece of news, with how many: as the two lists of objects have it.
@@ -213,7 +215,20 @@ def test_a_house_rule_that_moved_an_object_is_named(museum: Path) -> None:
     assert "A. &lt;b&gt;, 2031-05-12" in page
     assert texts(museum / "reports" / "index.html") == texts(museum / "reports" / "latest" / "news.html")
 
-    # Taken back, it is named as what holds no longer.
+    # Taken back at the desk, it is named with who took it back and why.
+    # The museum has another rule before it.
+    take_back(settings, len(load_settings(settings).house) - 1, "B. <i>", date(2031, 6, 1), "the pads are gone")
+    changes = night(museum)
+    assert changes is not None
+    assert {one.object_number for one in changes.objects} == moved
+    said = sentences(changes, 100)
+    assert all("no longer the house rule for Gallery 2" in one for one in said)
+    assert all("taken back by B. <i>, 2031-06-01: the pads are gone" in one for one in said)
+    ended = settings.read_text(encoding="utf-8")
+    settings.write_text(ended.partition("taken_back_by")[0], encoding="utf-8")
+    night(museum)
+
+    # Taken out of the file, it is named as what holds no longer.
     settings.write_text(settings.read_text(encoding="utf-8").removesuffix(rule), encoding="utf-8")
     changes = night(museum)
     assert changes is not None

@@ -11,9 +11,10 @@ from pipeline.analysis.classify import classify
 from pipeline.collection.mapping import PRESETS, load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.records import Anchorage, Furniture, Hanging, Item, Scene, Support
+from pipeline.records import run_sentences as say
 from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES
-from pipeline.report.assumed import assumed, rejected
+from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced
 from pipeline.report.language import language, speaking
 from pipeline.report.units import Units
 
@@ -21,6 +22,10 @@ WAYS = "assumed for two hooks or D-rings, or one hook or wire"
 DEPTH = f"depth of its hooks: 0.0127 m (0.00508 to 0.0254), {WAYS}"
 CLEARANCE = "clearance: 10 cm (5 to 30) to neighbour, wall or edge, assumed for: vessel"
 MASS = "mass: bronze of 8700 kg/m3 filling 0.5 of its outline, assumed"
+FRAMED = "mass: 15 kg/m2 (5 to 40) of the face of a framed work, assumed"
+SOLID = "section: taken as solid from 12 kg on and as hollow below, its area with its mass: it is of metal"
+SHEET = "the museum's record says 0.2 m, the sheet desk, A. Smith says 0.5 m, which is used"
+SCREEN = "A_max/g = 0.35 against B/H' = 0.1: rocks. V_max is 1.2 times 10 B/sqrt(H'): does not overturn."
 CASE = "furniture: a showcase, for its record names the case or plinth 'depth of its hooks: 3 m'"
 FURNITURE = (
     "furniture: a showcase, assumed for: vessel, usual_furniture.csv; not recorded; of 8 Hz (4 to 20), or stiff, "
@@ -33,7 +38,14 @@ FURNITURE = (
     [
         (DEPTH, "in", f"depth of its hooks: 0.5\u202fin (0.2 to 1), {WAYS}"),
         (CLEARANCE, "mm", "clearance: 100\u202fmm (50 to 300) to neighbour, wall or edge, assumed for: vessel"),
-        (MASS, "in", "mass: bronze of 8700\u202fkg/m³ filling 0.5 of its outline, assumed"),
+        (MASS, "cm", "mass: bronze of 8700\u202fkg/m³ filling 0.5 of its outline, assumed"),
+        # 8700 kg/m3 are 543.12 lb/ft3, 15 kg/m2 3.0722 lb/ft2, 12 kg 26.455 lb.
+        (MASS, "in", "mass: bronze of 543\u202flb/ft³ filling 0.5 of its outline, assumed"),
+        (FRAMED, "ft", "mass: 3.07\u202flb/ft² (1.02 to 8.19) of the face of a framed work, assumed"),
+        (SOLID, "in", "section: taken as solid from 26.5\u202flb on and as hollow below, its area with its mass: it is "
+         "of metal"),
+        (SHEET, "in", "the museum's record says 7\u00a0⅞\u00a0in, the sheet desk, A. Smith says 19\u00a0⅝\u00a0in, "
+         "which is used"),
         (CASE, "in", CASE),
         ("its owner says: 30 cm (10 to 50) are free", "in", "its owner says: 30 cm (10 to 50) are free"),
     ],
@@ -60,8 +72,8 @@ def test_what_is_assumed_is_said_in_the_readers_unit_of_length(text: str, length
         (
             FURNITURE,
             "ja",
-            "什器：展示ケース、次について仮定：容器、usual_furniture.csv、登録なし、8\u202fHz (4〜20)、または剛、"
-            "furniture.csv、固定されていると見なす（記録なし）",
+            "什器：展示ケース、次について仮定：容器、通常の什器の表、登録なし、8\u202fHz (4〜20)、または剛、"
+            "什器の表、固定されていると見なす（記録なし）",
         ),
     ],
 )
@@ -144,3 +156,31 @@ def test_no_english_is_left_in_what_was_assumed(clauses: set[str], code: str) ->
         told = [assumed(one, Units("cm")) for one in clauses if "Case 12" not in one and "3 m shelf" not in one]
     left = [one for one in told if re.search(r"[A-Za-z]{4,}", re.sub(r"\w+\.csv|'[^']*'", "", one))]
     assert left == []
+
+
+def test_what_happens_in_a_motion_is_told_in_the_readers_unit_and_language() -> None:
+    moved = say.COMES_BACK_MOVED(share=0.254, times=3.0, away=0.0254)
+    text = f"It tips by {{demand}}. {moved} {say.SLIDES_BEFORE(friction=0.2)} Somebody's own words."
+    told = happening(text, Units("in"))
+    assert told.startswith("It tips by {demand}. It comes back: it tips by at most 25\u00a0% of its critical angle")
+    # 2.54 cm are stored to the millimetre: 2.5 cm, 0.984 in.
+    assert "its base ends 0.984\u202fin from where it stood. But its friction of 0.2 lets it slide" in told
+    assert told.endswith(" Somebody's own words.")
+    assert happening(say.OPENS(angle=2.0, speed=0.127), Units("in")).endswith("at 5.12\u202fin/s.")
+    with speaking(language("it", None)):
+        assert happening(SCREEN, Units("cm")) == (
+            "A_max/g = 0,35 contro B/H' = 0,1: dondola. V_max è 1,2 volte 10 B/sqrt(H'): non si ribalta."
+        )
+
+
+@pytest.mark.parametrize("code", ["it", "es", "el", "ja"])
+def test_rules_and_sources_are_told_in_the_readers_language(code: str) -> None:
+    with speaking(language(code, None)):
+        told = rule_words("vessel-name: its name says that it is a vessel (named 'vase'); its record names no class")
+        assert "'vase'" in told
+        assert "named" not in told
+        for text in ("classes.csv, vessel (judgement)", "usual_hangings.csv; strengths: fixings.csv"):
+            assert not {"csv", "judgement", "vessel", "strengths"} & set(sourced(text).replace(".", " ").split())
+        assert "Blevins 1979, Table 8-1" in sourced("bending: a bar (Blevins 1979, Table 8-1)")
+    assert sourced("classes.csv, vessel (judgement)") == "classes.csv, vessel (judgement)"
+    assert rule_words('evidence: all (named "a\'b")') == 'evidence: all (named "a\'b")'

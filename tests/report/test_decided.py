@@ -92,7 +92,7 @@ def test_hostile_words_of_every_kind_are_text(tmp_path: Path) -> None:
         assert "qualified earthquake engineer should be consulted" in page, name
     index = pages["index.html"]
     assert "Since the last run" in index
-    assert "And 3 more;" in index
+    assert "And 3 more." in index
     assert "height 40 cm → 50 cm" in index
     assert "4 decisions are to be looked at again" in index
     assert "2 risks accepted, 1 measure installed, 1 verdict overruled, 1 class decided." in index

@@ -54,12 +54,18 @@ class _Matcher:
         return next(((0, letters) for letters, pattern in self.patterns if pattern.match(number)), None)
 
     def placed(self, number: str, gallery: str) -> bool:
-        """Say whether number and gallery are those that it names."""
-        return not (self.rule.gallery and gallery not in self.rule.gallery) and self.numbered(number) is not None
+        """Say whether it holds, and number and gallery are those that it names."""
+        return (
+            self.rule.holds
+            and not (self.rule.gallery and gallery not in self.rule.gallery)
+            and self.numbered(number) is not None
+        )
 
     def rank(self, item: Item, object_class: str, support: Support) -> _Rank | None:
-        """Return how particular it is for an object, None where it does not match."""
+        """Return how particular it is for an object, None where it does not match or was taken back."""
         rule = self.rule
+        if not rule.holds:
+            return None
         by_number = self.numbered(item.object_number)
         if by_number is None or (rule.gallery and item.gallery not in rule.gallery):
             return None
@@ -100,7 +106,7 @@ class HouseRules:
                     raise InputError(f"{self.named(at)}: class: there is no class {name!r}{hint}")
         for at, one in enumerate(self.rules):
             for before, other in enumerate(self.rules[:at]):
-                about = _disagree(other, one)
+                about = _disagree(other, one) if one.holds and other.holds else ""
                 if about and all(getattr(one, name) == getattr(other, name) for name in CRITERIA):
                     raise InputError(self._tie(before, at, about))
 

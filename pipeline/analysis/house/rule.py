@@ -41,6 +41,9 @@ SHARES = {"cg_ratio": (0.0, 1.0), "base_ratio": (0.0, 1.0), "suspension_ratio": 
 
 CRITERIA = ("number", "object_class", "gallery", "medium", "support")
 
+TAKEN_BACK = ("taken_back_by", "taken_back_on", "taken_back_why")
+"""Who took a rule back, when and why: all of them, or none."""
+
 _LISTED = 3
 """Names of one criterion that the words for a rule repeat."""
 
@@ -81,6 +84,7 @@ def _printable(text: str) -> str:
 
 _Quantity = Annotated[Span | None, BeforeValidator(_spanned, json_schema_input_type=float | Span | None)]
 _Name = Annotated[str, Field(max_length=200), AfterValidator(_printable)]
+_Reason = Annotated[str, Field(max_length=2_000), AfterValidator(_printable)]
 _Names = Annotated[
     tuple[_Name, ...], Field(max_length=10_000), BeforeValidator(_several, json_schema_input_type=str | tuple[str, ...])
 ]
@@ -131,11 +135,18 @@ class HouseRule(BaseModel):
     frequency_hz: _Quantity = Field(default=None, description="lowest natural frequency, in Hz")
     said_by: _Name = Field(description="who says so")
     said_on: date = Field(description="when, as 2031-05-01")
+    taken_back_by: _Name | None = Field(default=None, description="who took it back: it holds for nothing any more")
+    taken_back_on: date | None = Field(default=None, description="when")
+    taken_back_why: _Reason | None = Field(default=None, description="why")
 
     @model_validator(mode="after")
     def _whole(self) -> HouseRule:
         if not any(getattr(self, name) for name in CRITERIA):
             raise InputError('name what it is for: class, gallery, medium, number or support (number = "*" is all)')
+        back = [name for name in TAKEN_BACK if getattr(self, name) is not None]
+        if back and len(back) < len(TAKEN_BACK):
+            lost = next(name for name in TAKEN_BACK if name not in back)
+            raise InputError(f"a rule that is taken back says {', '.join(TAKEN_BACK)}: {lost} is missing")
         if not self.states:
             raise InputError(f"states nothing: say one of {', '.join((*WORDS, *QUANTITIES))}")
         if self.mount is Mount.UNKNOWN:
@@ -148,6 +159,11 @@ class HouseRule(BaseModel):
             if span is not None:
                 _believable(name, span)
         return self
+
+    @property
+    def holds(self) -> bool:
+        """Whether nobody took it back."""
+        return self.taken_back_by is None
 
     @cached_property
     def states(self) -> Mapping[str, tuple[str, Span | StrEnum]]:
@@ -183,6 +199,7 @@ class HouseRule(BaseModel):
             "classes": list(self.object_class),
             "about": [str(one) for name in others for one in getattr(self, name)[:_LISTED]],
             "states": {name: str(value) if isinstance(value, StrEnum) else "" for name, value in self.states.values()},
+            "back": [str(getattr(self, name)) for name in TAKEN_BACK] if not self.holds else [],
         }
 
     def plain(self) -> dict[str, Any]:

@@ -12,6 +12,8 @@ from pipeline.collection.database import METADATA
 from pipeline.collection.record import KINDS, to_items, to_records
 from pipeline.collection.sealing import require_sound, seal_column, write_seals
 from pipeline.records import ITEM_FIELDS, Item, Problem
+from pipeline.records import phrases as say
+from pipeline.records.phrase import Clause
 
 SUPPLEMENT = Table(
     "supplement",
@@ -133,6 +135,15 @@ def laid_over(items: Sequence[Item], sheets: Mapping[str, tuple[str, dict[str, A
     return [_laid_over(item, *sheets[item.object_number]) if item.object_number in sheets else item for item in items]
 
 
+def _otherwise(name: str) -> Clause:
+    """Return the phrase for a field of which record and sheet say different things."""
+    return say.SHEET_LENGTH if name.endswith("_m") else say.SHEET_MASS if name.endswith("_kg") else say.SHEET_OTHER
+
+
+def _said(name: str, value: Any) -> float | str:
+    return float(value) if name.endswith(("_m", "_kg")) else str(value)
+
+
 def _laid_over(item: Item, source: str, record: Mapping[str, Any]) -> Item:
     (before,) = to_records([item])
     fields = {name: value for name, value in record.items() if name in KINDS and name != "provenance"}
@@ -146,8 +157,8 @@ def _laid_over(item: Item, source: str, record: Mapping[str, Any]) -> Item:
             problems.append(
                 Problem(
                     name,
-                    f"the museum's record says {theirs}, the sheet {sheet} says {value}, which is used",
-                    "see which is right: mend the museum's record, or fill in a new sheet",
+                    _otherwise(name)(recorded=_said(name, theirs), sheet=sheet, filled=_said(name, value)),
+                    say.SEE_WHICH(),
                 )
             )
     kept = [of for of in before["provenance"] if of["field"] not in fields]

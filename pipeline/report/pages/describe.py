@@ -28,7 +28,7 @@ from pipeline.records import (
     Verdict,
 )
 from pipeline.records.result import BOUNDS
-from pipeline.report.assumed import assumed, rejected, rule_words
+from pipeline.report.assumed import assumed, class_words, happening, rejected, rule_words, sourced
 from pipeline.report.by_hand import by_hand
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
@@ -243,11 +243,11 @@ class Sayings:
             level=clean(f.level),
             state=finding_state(f),
             outcome=said(clean(f.outcome)),
-            sentence=clean(self._units.fill(self._certain(f, said(f.sentence)), values, where)),
+            sentence=clean(self._units.fill(self._certain(f, happening(f.sentence, self._units)), values, where)),
             numbers=self._sums(f, utilisation),
             utilisation=utilisation,
             bar=bar(f.utilisation),
-            screen=said(clean(f.screen)),
+            screen=happening(clean(f.screen), self._units),
             note=said(clean(f.note)),
             motion=self._motion(f.motion_hash, f.motion),
             assumptions=tuple(self.assumed(text) for text in f.assumptions),
@@ -311,7 +311,7 @@ class Sayings:
         span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
         text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
         # As among the assumptions of the object, where the same text is named once.
-        return NumberView(text, self.origin(e.origin), self.assumed(e.note), clean(e.source))
+        return NumberView(text, self.origin(e.origin), self.assumed(e.note), sourced(clean(e.source)))
 
     def rejected(self, text: str) -> str:
         """Say which measure was passed over and why, in the language and the lengths of the reader."""
@@ -379,7 +379,7 @@ class Describer:
             state=state,
             value_class=clean(item.value_class),
             worth=worth_words(scene, worth) if worth.terms else "",
-            object_class=words(clean(scene.object_class)),
+            object_class=class_words(clean(scene.object_class)),
             taken=taken_words(scene),
             rule=rule_words(clean(scene.rule)),
             support=held(scene),
@@ -393,7 +393,10 @@ class Describer:
             assumptions=tuple(dict.fromkeys(self._sayings.assumed(text) for text in named)),
             statements=tuple(said(clean(text)) for text in scene.statements),
             missing=tuple(missing_words(clean(m)) for m in scene.missing),
-            problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
+            problems=tuple(
+                (words(clean(p.field)), self._sayings.assumed(p.message), self._sayings.assumed(p.remedy))
+                for p in item.problems
+            ),
             wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
             grave=any(grave(f) for f in assessment.findings) if chance is None else chance.lost,
             chance=chance,
@@ -429,7 +432,7 @@ class Describer:
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
             rejected=tuple(self._sayings.rejected(text) for text in r.rejected),
-            source=clean(r.source),
+            source=sourced(clean(r.source)),
         )
 
     def _ended(self, r: Recommendation, before: Mapping[str, Finding]) -> tuple[CheckView, ...]:

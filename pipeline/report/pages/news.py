@@ -56,8 +56,12 @@ class NewsLine:
 
     @property
     def sentence(self) -> str:
-        """The line as a sentence, for places without markup."""
-        return plain(f"{self.head}: {self.number} {self.title}".rstrip() + self.ended)
+        """The line as a sentence, with who said what was done, for places without markup."""
+        begun = f"{self.head}: {self.number} {self.title}".rstrip()
+        if not self.by:
+            return plain(begun + self.ended)
+        whole = parted((begun + self.text.removesuffix("."), self.by))
+        return plain(whole if whole.endswith(".") else f"{whole}.")
 
     @property
     def ended(self) -> str:
@@ -151,7 +155,7 @@ def _of_row(row: Mapping[str, Any]) -> ObjectChange:
             told[side] = Brief(**known | {"state": None if known["state"] is None else State(known["state"])})
     told |= {"decided": tuple(Settled(**one) for one in told["decided"]), "fields": tuple(told["fields"])}
     told["ruled"] = tuple(
-        Ruled(**one | {"classes": tuple(one["classes"]), "about": tuple(one["about"])}) for one in told["ruled"]
+        Ruled(**one | {key: tuple(one.get(key, ())) for key in ("classes", "about", "back")}) for one in told["ruled"]
     )
     return ObjectChange(**told)
 
@@ -381,12 +385,17 @@ def _rule(one: Ruled) -> str:
         f"{stated_told(name)}: {word_told(name, word)}" if word else stated_told(name)
         for name, word in one.states.items()
     )
-    return phrase % {
+    told = phrase % {
         "whom": short(whom, _TITLE),
         "what": short(what, 120),
         "who": short(one.who, 60),
         "date": moment(clean(one.date)),
     }
+    if not one.back:
+        return told
+    who, when, why = one.back
+    ended = {"who": short(who, 60), "date": moment(clean(when)), "why": short(why, 120)}
+    return ", ".join((told, _("taken back by %(who)s, %(date)s: %(why)s") % ended))
 
 
 def to_do(brief: Brief) -> str:
