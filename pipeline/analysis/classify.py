@@ -398,7 +398,10 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     elif mount is not None and mount.note:
         assumptions.insert(0, mount.note)
     elif by_record.support is None:
-        assumptions.insert(0, f"{say.SUPPORT(support=support.value, told=row.told)}; {say.NOT_RECORDED()}")
+        phrase = say.SUPPORT(support=support.value, told=row.told)
+        if stands.support is not None:
+            phrase = say.SUPPORT_FIXED(support=support.value)
+        assumptions.insert(0, f"{phrase}; {say.NOT_RECORDED()}")
     told = tuple(dict.fromkeys(assumptions))
     scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)

@@ -3,6 +3,7 @@
 from pipeline.records.phrase import Clause
 
 SUPPORT = Clause("support: {support}, assumed for: {told}")
+SUPPORT_FIXED = Clause("support: {support}, assumed for a post that stands in a footing")
 SUPPORT_TOLD = Clause("support: {support}, as its record says on what it stands")
 MOUNT = Clause("mount: it {mount}, assumed for: {told}")
 NOT_RECORDED = Clause("not recorded")
