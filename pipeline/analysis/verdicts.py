@@ -40,6 +40,11 @@ class LevelMotions:
         return bool(self.site)
 
     @property
+    def of_mean(self) -> bool:
+        """Whether its demands are a mean, so that some of its motions ask more."""
+        return self.combine == "mean" and len(self.motions) > 1
+
+    @property
     def told(self) -> tuple[Motion, ...]:
         """The motions that findings are of, in the order of ``motions``."""
         return self.site or self.motions

@@ -53,6 +53,9 @@ HEAVIEST = (
 )
 """Follows the sentence of a measure that is built for a force, where its mass is assumed and may be twice the best."""
 
+OF_MEAN = "That is for the mean of the earthquakes: in one of them it moves more."
+"""Follows the sentence of a measure that gives room, where the mean of the motions of a level decides."""
+
 UNWEIGHED = 2.0
 """Largest over best estimate of an assumed mass from which on whoever builds for a force is told so."""
 
@@ -407,6 +410,8 @@ class _Search:
             if "force" in numbers and "pieces" not in numbers and mass is not None and _unweighed(mass):
                 numbers |= {"heaviest": (mass.high, "kg"), "weight": (mass.value, "kg")}
                 more = f" {HEAVIEST}{more}"
+            if measure.for_room and "clearance" in numbers and any(level.of_mean for level in self.runner.levels):
+                more = f" {OF_MEAN}{more}"
             self.helped.add(one.index)
             if measure.fastens:
                 self.fastened.add(one.index)

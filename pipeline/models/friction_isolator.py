@@ -69,7 +69,7 @@ FRICTION_ISOLATOR = Model(
     demand="displacement",
     capacity="clearance",
     applies=_applies,
-    sentence="On its low-friction pad it slides up to {demand}; there is room for {capacity}.",
+    sentence="On its low-friction pad it slides {demand}; there is room for {capacity}.",
     at_most="On its low-friction pad it slides at most {demand} (at most {high}); there is room for {capacity}.",
     fails="slides",
     trials=Trials(ranges={"friction_static": (0.03, 0.15)}, extremes=FRICTION_EXTREMES),

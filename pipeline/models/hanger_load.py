@@ -88,9 +88,7 @@ HANGER_LOAD = Model(
     demand="load",
     capacity="hanger_strength",
     applies=_applies,
-    sentence=(
-        "Its hangers are pulled by up to {demand} times its weight ({low} to {high}); they bear {capacity} times."
-    ),
+    sentence=("Its hangers are pulled by {demand} times its weight ({low} to {high}); they bear {capacity} times."),
     fails="tears out",
     states=(Harm.FALLS,),
     trials=Trials(ranges={"amplification": (1.0, 2.0)}),

@@ -144,7 +144,7 @@ SLIDING = Model(
     demand="displacement",
     capacity="clearance",
     applies=_applies,
-    sentence=("It slides up to {demand} ({low} to {high}) from where it stands; there is room for {capacity}."),
+    sentence=("It slides {demand} ({low} to {high}) from where it stands; there is room for {capacity}."),
     at_most=(
         "It slides at most {demand} from where it stands (at most {high}, its friction being uncertain); there is room "
         "for {capacity}."

@@ -204,7 +204,7 @@ def _hangs(scene: Scene, support: Support, why: str) -> str:
     return why if scene.support is not support else needs(scene, "length", "damping")
 
 
-_SENTENCE = "It swings up to {demand} ({low} to {high}) to the side; there is room for {capacity}."
+_SENTENCE = "It swings {demand} ({low} to {high}) to the side; there is room for {capacity}."
 
 SWING = Model(
     name="swing",

@@ -19,9 +19,9 @@ COMES_BACK_MOVED = Clause(
     "It comes back: it tips by at most {share:%~0f} of its critical angle and lands {times:-~0f} times; "
     "its base ends {away:cm~1f} from where it stood."
 )
-SLIDES_ONLY = Clause("It does not tilt; it slides up to {away:cm~1f}.")
+SLIDES_ONLY = Clause("It does not tilt; it slides {away:cm~1f}.")
 OPENS = Clause("Its lower edge opens by {angle:°~0f} and strikes the wall at {speed:cm/s~0f}.")
-MOVES_ON_FLOOR = Clause("By the best estimates it moves up to {away:cm~1f} on its floor.")
+MOVES_ON_FLOOR = Clause("By the best estimates it moves {away:cm~1f} on its floor.")
 STAYS_ON_FLOOR = Clause("By the best estimates it stays where it stands.")
 
 SENTENCES = tuple(one for one in globals().values() if isinstance(one, Clause))

@@ -18,7 +18,7 @@ from pipeline.mitigate.measures import MEASURES
 from pipeline.mitigate.measures.horizontal_isolator import GENERIC
 from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
-from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, ONLY_HERE, SIZED
+from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, OF_MEAN, ONLY_HERE, SIZED
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import UNTOLD_ISOLATOR, Anchorage, Item, Support
@@ -83,7 +83,7 @@ def _of_measures() -> Iterator[str]:
             yield sentence.replace("{what}", IT).replace("{product}", GENERIC).replace(" {how}", "")
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
-    yield from (ONLY_HERE, AT_BEST, SIZED, HEAVIEST, ANCHORED, NAMED_FIRST)
+    yield from (ONLY_HERE, AT_BEST, SIZED, HEAVIEST, OF_MEAN, ANCHORED, NAMED_FIRST)
     yield from (row.care for row in fixing_strengths().values())
 
 

@@ -391,4 +391,4 @@ def test_nobody_waxes_a_bonnet(medium: str, motion: Motion) -> None:
                   clearance_m=0.01, furniture=Furniture.FLOOR)  # fmt: skip
     advice = solve(bonnet, motion.scaled(4.0, "test"))
     assert advice.measure not in {"wax", "putty"}
-    assert "Microcrystalline wax: it harms paper" in advice.rejected
+    assert "Microcrystalline wax: it harms paper, textile or leather" in advice.rejected

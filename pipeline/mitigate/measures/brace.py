@@ -65,7 +65,8 @@ class Brace(Measure):
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
         """Propose a brace for the push of its mass."""
         scene = one.scene
-        if scene.support is not Support.FREESTANDING:
+        # What is fastened at its base may be held above its middle as well.
+        if scene.mount is not None or scene.support not in (Support.FREESTANDING, Support.FASTENED):
             return NOT_FREE
         if self.row.classes and scene.object_class not in self.row.classes:
             return refused(N_("objects of its kind cannot be braced so"))

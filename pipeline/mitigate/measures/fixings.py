@@ -32,6 +32,9 @@ SIDEWAYS, TIPPING = "What the fixing holds sideways", "What the fixing holds aga
 ROUNDING = 1e-9
 """Relative, by which what is just enough may come out short."""
 
+CLOTH = N_("paper, textile or leather")
+"""What is said of the row "paper" of materials.csv, which is of all these."""
+
 HARMLESS = "Nothing is known against it on such a material."
 """What is said of a fixing on a material that it neither harms nor needs care on."""
 
@@ -221,7 +224,7 @@ class Fixing(Measure, ABC):
             return UNKNOWN_SECTION
         material = touched(scene.item, runner.values)
         if material in self.strength.harms:
-            return refused(say.HARMS(material=material))
+            return refused(say.HARMS(material=CLOTH if material == "paper" else material))
         demand = HoldingDemand.of(scene, runner)
         care = self.strength.care if material in self.strength.care_for else HARMLESS
         found = (self._candidate(one, demand, care, worst) for worst in (True, False))

@@ -36,7 +36,7 @@ from pipeline.report.pages.alike import Memory, finding_key
 from pipeline.report.pages.chances import chance_view, left_over, open_for, worth_words
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
-from pipeline.report.pages.plainly import plain_measure
+from pipeline.report.pages.plainly import full_measure, plain_measure
 from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of, urgency
 from pipeline.report.pages.survey_words import missing_words, wish_views
 from pipeline.report.pages.views import (
@@ -428,7 +428,7 @@ class Describer:
             title=said(clean(r.title)),
             level=clean(r.level),
             plain=plain_measure(r, self._units) + left_over(r),
-            sentence=clean(self._units.fill(said(r.sentence), values, where, by_hand(self._units))) + left_over(r),
+            sentence=clean(self._units.fill(full_measure(r), values, where, by_hand(self._units))) + left_over(r),
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
             rejected=tuple(self._sayings.rejected(text) for text in r.rejected),

@@ -6,12 +6,22 @@ The full sentence of a measure, with the moment, the margin and the friction, st
 from collections.abc import Callable, Mapping
 
 from pipeline.mitigate.by_class import NAMED_FIRST
-from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, SIZED
+from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, OF_MEAN, SIZED
 from pipeline.records import Recommendation
 from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
 from pipeline.report.text import clean
 from pipeline.report.units import Units
+
+AMPLE = 20.0
+"""Times what is needed [-] above which nobody asks how many: a few grams are held hundreds of times over."""
+
+
+def full_measure(advice: Recommendation) -> str:
+    """Return the sentence of a measure in the reader's language, with its places still to be filled."""
+    sentence = said(advice.sentence)
+    ample = advice.parameters.get("margin", 0.0) > AMPLE
+    return sentence.replace("{margin}", _("more than 20")) if ample else sentence
 
 
 def plain_measure(advice: Recommendation, units: Units) -> str:
@@ -38,6 +48,8 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     except KeyError:
         # Results of another version may lack a number: its title is true in any case.
         told.append(f"{said(clean(advice.title))}.")
+    if OF_MEAN in advice.sentence:
+        told.append(_("That is for the mean of the earthquakes: in one of them it moves more."))
     if HEAVIEST in advice.sentence:
         told.append(
             _("That is for a weight of %(heaviest)s, the most that it may have; by the best estimate it is %(weight)s.")
