@@ -49,7 +49,7 @@ SIZED = "It holds so by the best estimates of weight, base and strength: weigh i
 
 HEAVIEST = (
     "That is for {heaviest}, the most that it may weigh; by the best estimate it weighs {weight}: "
-    "weigh it first, as so much less is enough in proportion."
+    "weigh it first: if it is lighter, the mount may be lighter in proportion."
 )
 """Follows the sentence of a measure that is built for a force, where its mass is assumed and may be twice the best."""
 

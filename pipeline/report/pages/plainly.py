@@ -56,7 +56,7 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
             % numbers
         )
         if AT_BEST not in advice.sentence:
-            told.append(_("Weigh it first: so much less is enough in proportion."))
+            told.append(_("Weigh it first: if it is lighter, the mount may be lighter in proportion."))
     if NAMED_FIRST in advice.sentence:
         told.append(_("Before that, say what it is: for another kind of object this may not be enough."))
     if AT_BEST in advice.sentence:
