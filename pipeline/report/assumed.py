@@ -141,20 +141,19 @@ def _clause(clause: str, units: Units) -> str:
 
 
 def _told(phrase: Clause, places: Mapping[str, str | Number], units: Units) -> str:
-    written = {
-        name: inches(found.si[0], up=False)
-        if isinstance(found, Number) and name in RECORDED and found.unit == "m" and units.pounds
-        else _number(found, units)
-        if isinstance(found, Number)
-        else found
-        if name in CITED
-        else _clause(found, units)
-        if name == REFUSAL
-        else _words(found)
-        for name, found in places.items()
-    }
+    written = {name: _filled(name, found, units) for name, found in places.items()}
     # Not by `format`: what was found may have braces, and a catalogue is checked for the names that it asks for.
     return _PLACE.sub(lambda place: written[place[1]], _(phrase.asked))
+
+
+def _filled(name: str, found: str | Number, units: Units) -> str:
+    """Say what stands in a place of a phrase."""
+    if isinstance(found, Number):
+        in_eighths = name in RECORDED and found.unit == "m" and units.pounds
+        return inches(found.si[0], up=False) if in_eighths else _number(found, units)
+    if name in CITED:
+        return found
+    return _clause(found, units) if name == REFUSAL else _words(found)
 
 
 def _number(found: Number, units: Units) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from statistics import median
@@ -344,8 +344,7 @@ def captions_of_dimensions(columns: Sequence[Column]) -> Column | None:
         None where none tells the sizes of one object in ten.
     """
     able = [column for column in columns if not column.prose]
-    best = max(able, key=lambda column: column.captioned * len(column.filled), default=None)
-    return best if best is not None and best.captioned * len(best.filled) >= 0.1 * len(best.values) else None
+    return _telling_most(able, lambda column: column.captioned)
 
 
 def prose_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
@@ -365,5 +364,10 @@ def prose_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> Co
     """
     taken = {id(column) for column in used}
     able = [column for column in columns if id(column) not in taken and column.prose]
-    best = max(able, key=lambda column: column.told * len(column.filled), default=None)
-    return best if best is not None and best.told * len(best.filled) >= 0.1 * len(best.values) else None
+    return _telling_most(able, lambda column: column.told)
+
+
+def _telling_most(columns: Sequence[Column], share: Callable[[Column], float]) -> Column | None:
+    """Return the column that tells the sizes of most objects, by the share of its texts that do; None below a tenth."""
+    best = max(columns, key=lambda column: share(column) * len(column.filled), default=None)
+    return best if best is not None and share(best) * len(best.filled) >= 0.1 * len(best.values) else None

@@ -269,7 +269,7 @@ class ReportWriter:
 
     def _exporting(self, pool: ThreadPoolExecutor) -> dict[str, Future[FileSum]]:
         """Begin to write the exports of the whole report; take those of the earlier one if it has the same pages."""
-        taken = {name for name in EXPORTS if self._same and self._previous.has(name)}
+        taken = set(filter(self._previous.has, EXPORTS)) if self._same else set()
         self._link(*taken)
         left = [name for name in EXPORTS if name not in taken]
         ranks = ranks_of(self._parts(KEYS)) if any(map(ranked, left)) else None
