@@ -165,6 +165,7 @@ def test_each_kind_has_its_own_name_and_settings() -> None:
         "sql",
         "tables",
         "json",
+        "xml",
     ]
     for one in SOURCES.own:
         assert one.Settings.model_fields["format"].annotation.__args__ == (one.name,)  # type: ignore[union-attr]

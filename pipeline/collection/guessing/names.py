@@ -47,7 +47,11 @@ _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
 _GLUED = re.compile(r"(\w{3,}?)(?:number|nummer|num|nr|no)")
 """A name of one word that ends with a word for number: "accessionnum"."""
+_GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Obj|Acc|Ide|Dim|Mea)(?=[A-Z])")
+"""Before a name: of which group of fields it is, in systems that write it so (EMu, MuseumPlus): "TitObjectNumber"."""
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
+_REFERENCE = re.compile(r"(?<=[a-z])(?:Ref|Grp|Tab)$")
+"""Behind the name of what is told by another table."""
 _OTHER = re.compile(r"[^\w]+|_")
 _SHORT = 4
 """Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
@@ -129,9 +133,10 @@ _ELSEWHERE = frozenset({
 })  # fmt: skip
 """Words of what an object has or what was made of it: a size, number or title within is not the object's."""
 
-_HOLDING = frozenset(
-    {"name", "value", "text", "label", "term", "content", "preflabel", "displayname", "de", "en", "fr"}
-)
+_HOLDING = frozenset({
+    *("name", "value", "text", "label", "term", "content", "preflabel", "displayname", "de", "en", "fr", "keyword"),
+    *("summarydata", "summary", "wert", "valeur", "valore", "valor"),
+})  # fmt: skip
 """Names within a name that say only that its value follows: "object_names.name"."""
 
 CALLED = ("name", "nom", "nome", "nombre", "naam", "nume")
@@ -363,6 +368,9 @@ def _forms(name: str) -> Iterator[str]:
         yield plain(path[0])
     if len(path) > 1 and plain(path[-1]).replace(" ", "") in _HOLDING:
         yield plain(path[-2])
+        yield plain(_REFERENCE.sub("", _GROUPED.sub("", path[-2])))
+    if _GROUPED.match(path[-1]):
+        yield plain(_GROUPED.sub("", path[-1]))
     # What stands in brackets may be a language.
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:

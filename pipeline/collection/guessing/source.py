@@ -28,6 +28,7 @@ from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import recognised
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.tables import files_of
+from pipeline.collection.sources.xml_objects import record_path
 
 READ = 2000
 """Rows that the guess is made from."""
@@ -97,8 +98,8 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         return _known(kind.name, path, told)
     if head.lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n\x00").startswith(b"<"):
         raise CollectionError(
-            f"{path.name}: XML of a kind that Kouros does not know; it knows LIDO, Adlib XML and MuseumPlus RIA. "
-            "Export it as one of these, or as CSV or Excel, and try again"
+            f"{path.name}: a web page or a workbook in the form of a page, whatever its name says; open it in a "
+            "spreadsheet program and save it as an .xlsx workbook or as CSV"
         )
     if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
         raise CollectionError(
@@ -107,6 +108,8 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         )
     if head[:2] in (b"\xff\xfe", b"\xfe\xff") and head.decode("utf-16", "ignore").lstrip()[:1] in ("{", "["):
         raise CollectionError(f"{path.name}: JSON in UTF-16; save it as UTF-8, and try again")
+    if what := _foreign(head):
+        raise CollectionError(f"{path.name}: {what}, and try again")
     encoding = told.choices.get("encoding") or encoding_of(head)
     try:
         # A character that the end of what was read cuts in two is no fault.
@@ -122,8 +125,33 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
     return source
 
 
+_SIGNS = (
+    (b"%PDF", 0, "a PDF, which holds pages and no table; export the list as CSV or Excel"),
+    (b"SQLite format 3\0", 0, "an SQLite database; name it as an address (sqlite:///path/of/the/file)"),
+    (b"Standard Jet DB", 4, "a database of Access; export its table or query of the objects as CSV or Excel"),
+    (b"Standard ACE DB", 4, "a database of Access; export its table or query of the objects as CSV or Excel"),
+    (b"HBAM", 14, "a database of FileMaker; export its records as CSV, Excel or XML"),
+    (b"{\\rtf", 0, "a text document; export the list as CSV or Excel"),
+)
+"""How files begin that programs of museums leave, at which byte, and what each is."""
+
+
+def _foreign(head: bytes) -> str:
+    """Say of a file what it is and what to do with it where it is no text; "" where it may be one."""
+    for sign, at, what in _SIGNS:
+        if head[at : at + len(sign)] == sign:
+            return what
+    even, odd = (head[at:100:2].count(0) > 40 for at in (0, 1))
+    # In UTF-16 every other byte of Latin letters is none.
+    if b"\0" in head and head[:2] not in (b"\xff\xfe", b"\xfe\xff") and even == odd:
+        return "no text, and of no kind that Kouros knows; export the objects as CSV, Excel or XML"
+    return ""
+
+
 def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
-    """Return how a source of a known kind is read; of plain JSON, where its first value lists the objects."""
+    """Return how a source of a known kind is read; of plain JSON and XML, where it lists the objects."""
+    if kind == "xml":
+        return {"format": kind, "records": _xml_records(path, told)}
     if kind != "json":
         return {"format": kind}
     file = json_files(path, deep=True)[0] if path.is_dir() else path
@@ -136,6 +164,18 @@ def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
     if where:
         told.sure.append(f"objects are listed as {where!r}")
     return {"format": "json"} | ({"records": where} if where else {})
+
+
+def _xml_records(path: Path, told: GuessNotes) -> str:
+    where = told.choices.get("records", "")
+    if not where:
+        try:
+            with path.open("rb") as packed, closing(unpacked(packed, path.name, STANDARD.bytes)) as binary:
+                where = "/".join(record_path(binary, path.name))
+        except OSError as problem:
+            raise unreadable(path, problem) from problem
+    told.sure.append(f"each {where!r} is an object")
+    return where
 
 
 def delimited_of(folder: Path, told: GuessNotes) -> dict[str, str]:

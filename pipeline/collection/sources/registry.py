@@ -14,6 +14,7 @@ from pipeline.collection.sources.linked_art import LinkedArt
 from pipeline.collection.sources.museumplus import MuseumPlus
 from pipeline.collection.sources.tables import Tables
 from pipeline.collection.sources.xlsx import Xlsx
+from pipeline.collection.sources.xml_objects import Xml
 from pipeline.errors import InputError
 from pipeline.extensions import Registry
 
@@ -40,7 +41,7 @@ def _source(value: object) -> Source:
 
 SOURCES: Registry[Source] = Registry(
     "kouros.sources",
-    (Csv(), Tsv(), Xlsx(), Lido(), Adlib(), MuseumPlus(), LinkedArt(), Database(), Tables(), Json()),
+    (Csv(), Tsv(), Xlsx(), Lido(), Adlib(), MuseumPlus(), LinkedArt(), Database(), Tables(), Json(), Xml()),
     _source,
 )
 """All kinds of sources, in the order in which they are asked whether they recognise one."""

@@ -43,7 +43,9 @@ RANGE_LIMIT = 100_000
 SAVE_AGAIN = "open it in a spreadsheet program and save it as an .xlsx workbook"
 """What mends most workbooks."""
 
-_OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+"""How files of the old Office begin, and workbooks that are protected by a password."""
+
 _MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 _WHOLE = re.compile(r"\[Content_Types\]\.xml|.*\.rels|xl/workbook\.xml|xl/styles\.xml|xl/theme/.*|docProps/.*", re.I)
 _REFERENCE = re.compile(r"([A-Z]{1,3})([1-9][0-9]{0,6})")
@@ -68,7 +70,7 @@ def check_kind(stream: BinaryIO, file: str) -> None:
         Naming the file, what it is, and how to make a workbook of it.
     """
     start = stream.read(8)
-    if start == _OLE:
+    if start == OLE:
         # Both kinds are compound files; the protected one has a stream of this name.
         while block := stream.read(1 << 20):
             if "EncryptedPackage".encode("utf-16-le") in start + block:

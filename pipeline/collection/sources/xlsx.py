@@ -25,6 +25,7 @@ from pipeline.collection.sources.rows import Row, TypedNumber, as_text
 from pipeline.collection.sources.shown import is_moment, shown
 from pipeline.collection.sources.workbook import (
     COLUMN_LIMIT,
+    OLE,
     SAVE_AGAIN,
     Range,
     Survey,
@@ -444,8 +445,8 @@ class Xlsx(FileSource):
     Settings = XlsxSettings
 
     def recognises(self, where: str, head: bytes) -> bool:  # noqa: ARG002
-        """Say whether it begins as a ZIP archive, which a workbook is."""
-        return head.startswith(b"PK\x03\x04")
+        """Say whether it begins as a ZIP archive, which a workbook is, or as an old workbook, which is refused."""
+        return head.startswith((b"PK\x03\x04", OLE))
 
     def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
         """Yield the header and the rows of the sheet.

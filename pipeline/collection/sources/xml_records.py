@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, BinaryIO
 
@@ -48,6 +48,8 @@ class XmlRecords:
         What is said of a file without any; it may name {root}.
     also : str
         Tag of another element that is given in its place, such as a mark that more would follow.
+    path : tuple of str
+        Names of the elements from the root to a record, without namespaces; (): a record is every element of the tag.
     """
 
     file: str
@@ -55,6 +57,7 @@ class XmlRecords:
     what: str
     none: str
     also: str = ""
+    path: tuple[str, ...] = ()
 
     def read(self, stream: BinaryIO) -> Iterator[Any]:
         """Yield the elements; each is forgotten when the next one is asked for.
@@ -77,17 +80,7 @@ class XmlRecords:
         from lxml import etree
 
         bounded = _Bounded(stream, self.file, self.what)
-        events = etree.iterparse(
-            bounded,
-            events=("start", "end"),
-            tag=[tag for tag in (self.tag, self.also) if tag],
-            resolve_entities=False,
-            no_network=True,
-            load_dtd=False,
-            huge_tree=False,
-            remove_comments=True,
-            remove_pis=True,
-        )
+        events = safely_parsed(bounded, [tag for tag in (self.tag, self.also) if tag])
         seen = 0
         while True:
             try:
@@ -111,10 +104,13 @@ class XmlRecords:
                         "hide harm; remove the line that begins with <!DOCTYPE"
                     )
                 continue
-            if element.tag != self.tag:
+            if self.also and element.tag == self.also:
                 yield element
                 continue
-            if any(above.tag == element.tag for above in element.iterancestors()):
+            if self.path:
+                if path_of(element) != self.path:
+                    continue
+            elif any(above.tag == element.tag for above in element.iterancestors()):
                 raise CollectionError(
                     f"{self.file}, line {element.sourceline}: a record within a record; {EXPORT_AGAIN}"
                 )
@@ -125,6 +121,46 @@ class XmlRecords:
         if not seen:
             root = events.root.tag if events.root is not None else "nothing"
             raise CollectionError(f"{self.file}: {self.none.format(root=root[:100])}")
+
+
+def safely_parsed(stream: Any, tags: Sequence[str] | None = None) -> Any:
+    """Return the events of an XML file: no entities, nothing fetched.
+
+    Parameters
+    ----------
+    stream : binary stream
+        The file, at its beginning.
+    tags : sequence of str or None
+        Of the elements that count; None: all.
+
+    Returns
+    -------
+    lxml.etree.iterparse
+        Of starts and ends.
+    """
+    from lxml import etree
+
+    return etree.iterparse(
+        stream,
+        events=("start", "end"),
+        tag=tags,
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        huge_tree=False,
+        remove_comments=True,
+        remove_pis=True,
+    )
+
+
+def local_name(element: Any) -> str:
+    """Return the name of an element without its namespace."""
+    return str(element.tag).rpartition("}")[2]
+
+
+def path_of(element: Any) -> tuple[str, ...]:
+    """Return the names of the elements from the root to one, without namespaces."""
+    return (*(local_name(above) for above in reversed([*element.iterancestors()])), local_name(element))
 
 
 def _forget(element: Any) -> None:

@@ -15,7 +15,8 @@ import pytest
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guess import Guess, guess
 from pipeline.collection.reading import read_items
-from pipeline.collection.sources.json_objects import flat, list_in
+from pipeline.collection.sources.json_objects import list_in
+from pipeline.collection.sources.nested import flat
 from pipeline.records import Item
 
 THINGS = (("1913.20", "Vase", 30.5, 12), ("1913.2", "Jar", 22, 15), ("b-3", "Bust", 61, 40))

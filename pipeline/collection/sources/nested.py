@@ -1,0 +1,191 @@
+"""Objects as names and values within each other, from JSON or XML: their cells by the paths of their names.
+
+A name within a name is a column by its path, `MuseumLocation.DisplayCurrentLocation`; a list of texts is one text, with
+"; " between. A list whose entries each say a kind of measurement and a number, such as
+`{"type": "hoogte", "value": "115", "unit": "cm", "part": "doekmaat"}`, becomes columns `dimensions.height`,
+`dimensions.frame width`, ... with their units as written.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.measurement_terms import kind_of, unit_of
+from pipeline.collection.sources.measurements import NUMBER, OF_MEASUREMENTS, Measurements, joined
+from pipeline.collection.sources.rows import Row, as_text
+
+MOST_COLUMNS = 2000
+"""Names of one museum's objects."""
+
+Objects = Callable[[], Iterator[tuple[int, Mapping[str, Any]]]]
+"""Gives the lines and the objects of a source from its beginning, as often as it is asked."""
+
+_KINDS = ("type", "kind", "dimension_type", "dimensionType", "dimensiontype", "name", "label", "dimension")
+_VALUES = ("value", "dimension", "amount", "number", "size", "val", "reading", "measurement")
+_UNITS = ("unit", "units", "unit_name", "unitName", "unitname", "uom")
+_PARTS = ("part", "element", "element_name", "elementName", "extent", "aspect")
+# Words that a longer name ends in, PhyType beside PhyValue and PhyUnit: "name" and "number" end too many.
+_LAST = {
+    _KINDS: frozenset(("type", "kind", "dimension")),
+    _VALUES: frozenset(("value", "amount", "size", "val", "reading")),
+    _UNITS: frozenset(("unit", "units", "uom")),
+    _PARTS: frozenset(("part", "element", "extent", "aspect")),
+}
+_WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+_WITH_UNIT = re.compile(rf"({NUMBER.pattern})\s*([^\W\d]+\.?|\")", re.ASCII)
+_SCALARS = (str, int, float, bool)
+
+
+def object_rows(objects: Objects, file: str, unit: str | None, remedy: str) -> Iterator[Row]:
+    """Yield the header and the objects: they are read once for their names, and once for the rows.
+
+    Parameters
+    ----------
+    objects : callable
+        Gives them.
+    file : str
+        The name of the source, for messages.
+    unit : str or None
+        The unit of lengths that name none.
+    remedy : str
+        What mends a source of which too many names are told.
+
+    Yields
+    ------
+    Row
+        First the header.
+
+    Raises
+    ------
+    CollectionError
+        For more names than a table of objects has, for none, and for a source that changes while it is read.
+    """
+    names: dict[str, int] = {}
+    for line, one in objects():
+        for name in flat(one, unit)[0]:
+            names.setdefault(name, len(names))
+        if len(names) > MOST_COLUMNS:
+            raise CollectionError(f"{file}, line {line}: more than {MOST_COLUMNS:,} names; {remedy}")
+    if not names:
+        raise CollectionError(f"{file}: holds no object with a name and a value; see whether this is the right file")
+    yield Row(0, 1, list(names))
+    for number, (line, one) in enumerate(objects(), start=1):
+        cells, faults = flat(one, unit)
+        if not cells.keys() <= names.keys():
+            raise CollectionError(f"{file}, line {line}: was changed while it was read; import it again")
+        yield Row(
+            number,
+            line,
+            [cells.get(name, "") for name in names],
+            faults={names[name]: fault for name, fault in faults.items()},
+        )
+
+
+def flat(record: Mapping[str, Any], unit: str | None = None) -> tuple[dict[str, str], dict[str, tuple[str, str]]]:
+    """Return an object as cells by the paths of their names, and the faults of those that cannot be used.
+
+    Parameters
+    ----------
+    record : mapping
+        An object.
+    unit : str or None
+        The unit of lengths that name none.
+
+    Returns
+    -------
+    (dict of str to str, dict of str to (str, str))
+        Empty texts where a name has no value, so that the name is known.
+    """
+    cells: dict[str, str] = {}
+    faults: dict[str, tuple[str, str]] = {}
+
+    def put(path: str, text: str) -> None:
+        cells[path] = joined([cells[path], text]) if cells.get(path) else text
+
+    def take(path: str, value: Any) -> None:
+        if isinstance(value, dict):
+            for name, one in value.items():
+                take(f"{path}.{name}" if path else name, one)
+        elif isinstance(value, list) and not all(isinstance(one, _SCALARS) or one is None for one in value):
+            if not _measured(path, value):
+                for one in value:
+                    take(path, one)
+        elif isinstance(value, list):
+            put(path, joined(as_text(one) for one in value))
+        else:
+            put(path, as_text(value))
+
+    def _measured(path: str, value: list[Any]) -> bool:
+        said = [one for one in map(_measurement, value) if one is not None]
+        if len(said) < len(value) or not any(kind_of(one[0]) for one in said):
+            return False
+        measured = Measurements(unit)
+        for one in said:
+            measured.add(*one)
+        for name, text in measured.cells().items():
+            put(f"{path}.{name}", text)
+        for at, fault in measured.faults(OF_MEASUREMENTS).items():
+            faults[f"{path}.{OF_MEASUREMENTS[at]}"] = fault
+            cells.setdefault(f"{path}.{OF_MEASUREMENTS[at]}", "")
+        return True
+
+    take("", record)
+    return cells, faults
+
+
+def is_measurement(value: Any) -> bool:
+    """Say whether an entry tells one measurement of a kind that is known.
+
+    Parameters
+    ----------
+    value : object
+        Such as `{"type": "hoogte", "value": "115", "unit": "cm"}`.
+
+    Returns
+    -------
+    bool
+    """
+    said = _measurement(value)
+    return said is not None and kind_of(said[0]) is not None
+
+
+def _measurement(value: Any) -> tuple[str, str, str, str] | None:
+    """Return kind, number, unit and part of what one entry of a list says; None where it says no measurement."""
+    if not isinstance(value, dict):
+        return None
+    number = next((name for name in _named(value, _VALUES) if _amount(_text(value[name]))), None)
+    kinds = [name for name in _named(value, _KINDS) if name != number and _text(value[name])]
+    kind = next((name for name in kinds if kind_of(_text(value[name]))), kinds[0] if kinds else None)
+    if number is None or kind is None:
+        return None
+    amount, within = _amount(_text(value[number])) or ("", "")
+    unit, part = (next((_text(value[name]) for name in _named(value, those) if value[name]), "")
+                  for those in (_UNITS, _PARTS))  # fmt: skip
+    return _text(value[kind]), amount, unit or within, part
+
+
+def _named(value: Mapping[str, Any], names: tuple[str, ...]) -> list[str]:
+    """Return the names of an entry that are some words, or that end in one."""
+    last = _LAST[names]
+    return [*(name for name in names if name in value),
+            *(name for name in value if name not in names and _last_word(name) in last)]  # fmt: skip
+
+
+def _last_word(name: str) -> str:
+    words = _WORDS.findall(name)
+    return words[-1].casefold() if words else ""
+
+
+def _amount(text: str) -> tuple[str, str] | None:
+    """Return a number and the unit behind it, "" where there is none; None where it is no number."""
+    if NUMBER.fullmatch(text.strip()):
+        return text.strip(), ""
+    told = _WITH_UNIT.fullmatch(text.strip())
+    return (told[1], told[2]) if told and unit_of(told[2]) else None
+
+
+def _text(value: Any) -> str:
+    return as_text(value) if isinstance(value, _SCALARS) else ""
