@@ -171,9 +171,15 @@ def _xml_records(path: Path, told: GuessNotes) -> str:
     if not where:
         try:
             with path.open("rb") as packed, closing(unpacked(packed, path.name, STANDARD.bytes)) as binary:
-                where = "/".join(record_path(binary, path.name))
+                at, others = record_path(binary, path.name)
         except OSError as problem:
             raise unreadable(path, problem) from problem
+        where = "/".join(at)
+        if others:
+            told.doubts.append(
+                f"each {where!r} is taken for an object; nothing is read of {', '.join(map(repr, others[:20]))}: "
+                "--choose records=PATH takes another"
+            )
     told.sure.append(f"each {where!r} is an object")
     return where
 

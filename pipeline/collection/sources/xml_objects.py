@@ -118,7 +118,7 @@ class Xml(FileSource):
             For a file that is damaged, declares a document type, or holds no objects.
         """
         settings = request.settings
-        path = tuple(filter(None, settings.records.split("/"))) or record_path(binary, file)
+        path = tuple(filter(None, settings.records.split("/"))) or record_path(binary, file)[0]
         remedy = "say in the mapping which elements are the objects, [source] records, or export fewer fields"
 
         def objects() -> Iterator[tuple[int, Mapping[str, Any]]]:
@@ -128,7 +128,7 @@ class Xml(FileSource):
         return object_rows(objects, file, settings.unit, remedy)
 
 
-def record_path(binary: BinaryIO, file: str) -> Path:
+def record_path(binary: BinaryIO, file: str) -> tuple[Path, list[str]]:
     """Return which elements of a file are its objects: those that come again and again and say nearly all of it.
 
     Parameters
@@ -140,8 +140,10 @@ def record_path(binary: BinaryIO, file: str) -> Path:
 
     Returns
     -------
-    tuple of str
+    path : tuple of str
         Names of the elements from the root to an object.
+    others : list of str
+        Paths of other elements that come again and again beside them, joined by slashes.
 
     Raises
     ------
@@ -150,15 +152,21 @@ def record_path(binary: BinaryIO, file: str) -> Path:
     """
     binary.seek(0)
     found = _tally(binary, file)
-    if found.root == _FILEMAKER:
-        return (_FILEMAKER, "RESULTSET", "ROW")
-    whole = sum(said for path, said in found.said.items() if len(path) == 1)
-    several = [
-        path
-        for path, count in found.count.items()
-        if count > 1 and len(path) > 1 and len(found.names[path]) > 1 and found.said[path] >= COVERED * whole
+    path = (_FILEMAKER, "RESULTSET", "ROW") if found.root == _FILEMAKER else _likeliest(found, file)
+    others = [
+        one
+        for one in found.several()
+        if one[: len(path)] != path and path[: len(one)] != one and one[:1] != (_FILEMAKER,)
     ]
-    best = min(several, key=lambda path: (len(path), -found.said[path]), default=None)
+    outer = [one for one in others if not any(one[: len(o)] == o for o in others if o != one)]
+    return path, ["/".join(one) for one in outer]
+
+
+def _likeliest(found: _Tally, file: str) -> Path:
+    """Return where the objects of a file are, by what is known of its elements."""
+    whole = sum(said for path, said in found.said.items() if len(path) == 1)
+    able = [path for path in found.several() if found.said[path] >= COVERED * whole]
+    best = min(able, key=lambda path: (len(path), -found.said[path]), default=None)
     if best is not None and found.said[best] >= PASSED_ON * whole:
         return _innermost(best, found)
     # One object alone has several sizes, say, but says more different things than one of these does.
@@ -201,6 +209,10 @@ class _Tally:
         self.names[path[:-1]].add(_called(element))
         for depth in range(1, len(path) + 1) if said else ():
             self.said[path[:depth]] += said
+
+    def several(self) -> list[Path]:
+        """Return the places of which there are several elements, each of which says more than one thing."""
+        return [path for path, count in self.count.items() if count > 1 < len(path) and len(self.names[path]) > 1]
 
 
 def _tally(binary: BinaryIO, file: str) -> _Tally:

@@ -215,7 +215,19 @@ def test_where_the_objects_are_is_found(tmp_path: Path) -> None:
         path = tmp_path / f"{name}.xml"
         path.write_text(DIALECTS[name](THINGS * 20), encoding="utf-8")
         with path.open("rb") as binary:
-            assert "/".join(record_path(binary, path.name)) == where
+            found, others = record_path(binary, path.name)
+            assert "/".join(found) == where
+            assert not others
+
+
+def test_tables_beside_the_objects_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "export.xml"
+    places = "".join(f"<Standorte><ID>{at}</ID><Raum>Room {at}</Raum></Standorte>" for at in range(3))
+    path.write_text(access(THINGS).replace("</dataroot>", places + "</dataroot>"), encoding="utf-8")
+    made = guess(path)
+    assert any("nothing is read of 'dataroot/Standorte'" in doubt for doubt in made.doubts)
+    chosen = guess(path, choices={"records": "dataroot/Standorte", "object_number": "ID", "gallery": "Raum"})
+    assert chosen.mapping.source.records == "dataroot/Standorte"
 
 
 def test_nothing_that_is_said_is_lost(tmp_path: Path) -> None:
