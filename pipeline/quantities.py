@@ -127,6 +127,25 @@ class Quantity:
         return f"a finite number{' ' if parts else ''}{' and '.join(parts)}{unit}"
 
 
+def figures(value: float, digits: int) -> str:
+    """Write a number with so many significant digits, as people do: 1000 and not 1e+03.
+
+    Parameters
+    ----------
+    value : float
+        In any unit.
+    digits : int
+        Significant ones.
+
+    Returns
+    -------
+    str
+        With an exponent from 1e9 on and below 1e-4.
+    """
+    text = f"{value:.{digits}g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < 1e9 else text
+
+
 def counted(number: int, one: str, many: str = "") -> str:
     """Return a number with its noun: "1 run", "2,000 runs".
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self, TextIO
 from unicodedata import category
 
 from pipeline.operations.event_log import note
-from pipeline.quantities import counted
+from pipeline.quantities import counted, figures
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
@@ -354,5 +354,5 @@ def _cell(value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return "" if isnan(value) else f"{value:.6g}"
+        return "" if isnan(value) else figures(value, 6)
     return printable(str(value))

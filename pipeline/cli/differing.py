@@ -8,6 +8,7 @@ import click
 
 from pipeline.cli.console import listed, printable
 from pipeline.operations.run_summary import json_ready, plain_changes
+from pipeline.quantities import figures
 from pipeline.records import FieldChange, RunChanges, VerdictChange
 from pipeline.report.pages.news import sentences
 
@@ -71,6 +72,6 @@ def _field(change: FieldChange) -> str:
 
 def _value(value: Any) -> str:
     if isinstance(value, dict) and "value" in value:
-        return f"{value['value']:.4g}" if isinstance(value["value"], float) else str(value["value"])
+        return figures(value["value"], 4) if isinstance(value["value"], float) else str(value["value"])
     text = "none" if value is None else value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
     return text if len(text) <= 60 else f"{text[:59]}…"

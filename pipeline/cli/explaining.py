@@ -9,6 +9,7 @@ import click
 
 from pipeline.cli.console import printable
 from pipeline.cli.options import Options
+from pipeline.quantities import figures
 
 if TYPE_CHECKING:
     from pipeline.records import Estimate, Likelihood, Recommendation
@@ -91,13 +92,13 @@ def _likelihood(found: "Likelihood") -> Iterator[str]:
     from pipeline.records.likelihood import CLASS
 
     yield f"  harm, {found.level}: {found.band.value}"
-    yield f"    probability {found.probability:.3g} ± {found.error:.1g}, of {found.samples} samples"
+    yield f"    probability {figures(found.probability, 3)} ± {found.error:.1g}, of {found.samples} samples"
     for one in found.classes:
         # What harm does to it as each class, of as many of the samples as had it be that.
         harmed = "not drawn" if one.probability is None else f"harm {one.probability:.2g} of {one.samples} samples"
         yield f"    if {' or '.join(one.classes)} ({one.chance:.2f}): {harmed}"
     for state, probability in found.states.items():
-        yield f"    {state:<10}{probability:.3g}"
+        yield f"    {state:<10}{figures(probability, 3)}"
     if found.open_for:
         what = "what it is" if found.open_for == CLASS else found.open_for
         yield f"    open      {what} alone may change what is decided; it is worth {found.worth:.2g}"
@@ -153,4 +154,4 @@ def _estimate(estimate: "Estimate") -> str:
 
 
 def _number(value: float | None) -> str:
-    return "not known" if value is None else f"{value:.4g}"
+    return "not known" if value is None else figures(value, 4)

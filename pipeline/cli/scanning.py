@@ -9,6 +9,7 @@ import click
 
 from pipeline.cli.console import aligned
 from pipeline.cli.options import as_json
+from pipeline.quantities import figures
 
 if TYPE_CHECKING:
     from pipeline.meshes import Scan
@@ -108,18 +109,18 @@ def _document(found: "Scan") -> dict[str, Any]:
 
 def _lines(found: "Scan") -> list[str]:
     width, deep, high = found.size
-    mass = "unknown without --density" if found.mass is None else f"{found.mass:.4g} kg"
+    mass = "unknown without --density" if found.mass is None else f"{figures(found.mass, 4)} kg"
     kind = "closed mesh, taken as solid" if found.closed else "convex hull of an open mesh: judgement"
     lines = [
         f"{found.file}: {kind}",
-        f"size      {width:.4g} x {deep:.4g} x {high:.4g} m (width, depth, height)",
-        f"mass      {mass}; {found.volume:.4g} m3, {found.fill:.0%} of the box around it",
+        f"size      {figures(width, 4)} x {figures(deep, 4)} x {figures(high, 4)} m (width, depth, height)",
+        f"mass      {mass}; {figures(found.volume, 4)} m3, {found.fill:.0%} of the box around it",
     ]
     if len(found.shares) > 1:
         lines.append("bodies    " + ", ".join(f"{share:.1%}" for share in found.shares) + " of the mass")
     lines += [
-        f"cg        {found.cg_height:.4g} m above the base; {found.cg_height_hollow:.4g} m as a shell",
-        "gyration  " + ", ".join(f"{radius:.4g}" for radius in found.gyration) + " m about width, depth, height",
+        f"cg        {figures(found.cg_height, 4)} m above the base; {figures(found.cg_height_hollow, 4)} m as a shell",
+        "gyration  " + ", ".join(figures(radius, 4) for radius in found.gyration) + " m about width, depth, height",
         f"turned    {found.leaned:.2g} degrees, to rest on its lowest points",
         "",
         "Half widths of the contact polygon, mm:",

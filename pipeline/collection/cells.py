@@ -18,7 +18,7 @@ from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.record import CHOICES, plausible, units_of
 from pipeline.collection.sources.rows import TypedNumber, as_text
 from pipeline.errors import InputError
-from pipeline.quantities import LENGTHS
+from pipeline.quantities import LENGTHS, figures
 from pipeline.records import ContactPolygon, Origin, Problem, Provenance
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
@@ -100,7 +100,9 @@ class Cells:
         reason = _implausible(name, metric)
         if reason:
             shown = f"{_show(text)}{'' if unit == '-' else f' {unit}'}"
-            converted = f" = {metric:.6g} {plausible()[name].unit}" if units and unit != plausible()[name].unit else ""
+            converted = (
+                f" = {figures(metric, 6)} {plausible()[name].unit}" if units and unit != plausible()[name].unit else ""
+            )
             self._note(name, column, f"{shown}{converted} {reason}", _remedy(metric))
             return None
         written = as_text(exact) if unit == "-" else f"{as_text(exact)} {unit}"
@@ -208,7 +210,9 @@ class Cells:
         points = tuple((x * LENGTHS[unit], y * LENGTHS[unit]) for x, y in pairs)
         for value in (value for point in points for value in point):
             if not plausible()[name].low <= value <= plausible()[name].high:
-                self._note(name, column, f"the coordinate {value:.6g} m {_implausible(name, value)}", _remedy(value))
+                self._note(
+                    name, column, f"the coordinate {figures(value, 6)} m {_implausible(name, value)}", _remedy(value)
+                )
                 return ()
         try:
             ContactPolygon.around(points)
@@ -263,7 +267,7 @@ class Cells:
         """
         reason = _implausible(name, value)
         if reason:
-            message = f"{_show(written)} = {value:.6g} {plausible()[name].unit} {reason}"
+            message = f"{_show(written)} = {figures(value, 6)} {plausible()[name].unit} {reason}"
             self.problems.append(Problem(name, message, "correct the text in the museum's database"))
         return not reason
 
@@ -297,7 +301,7 @@ class Cells:
         total = float(exact_sum)
         reason = _implausible(name, total)
         if reason:
-            shown = f"{' '.join(written)} = {total:.6g} {plausible()[name].unit} {reason}"
+            shown = f"{' '.join(written)} = {figures(total, 6)} {plausible()[name].unit} {reason}"
             self._note(name, column, shown, _remedy(total))
             return None
         self.provenance.append(Provenance(name, Origin.MEASURED, " ".join(written)))
@@ -330,7 +334,7 @@ class Cells:
             return None
         reason = _implausible(name, found.value)
         if reason:
-            shown = f"{_show(text)} = {found.value:.6g} {plausible()[name].unit} {reason}".replace(" - ", " ")
+            shown = f"{_show(text)} = {figures(found.value, 6)} {plausible()[name].unit} {reason}".replace(" - ", " ")
             self._note(name, column, shown, "measure it again, or leave the cell empty")
             return None
         said = "said to be about so" if found.about else ""

@@ -7,6 +7,7 @@ from math import radians, tan
 from typing import Any
 
 from pipeline.collection.unit_audit import SOLID
+from pipeline.quantities import figures
 from pipeline.records import SECTION_SHAPES, ContactPolygon, Problem
 from pipeline.tables.assumed import assumed
 
@@ -44,13 +45,15 @@ def contradictions(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
     for field, what in (("cg_height_m", "centre of gravity"), ("section_height_m", "weakest section")):
         value = values.get(field)
         if value is not None and height is not None and value > height * _TOLERANCE:
-            message = f"the {what} at {value:.4g} m would lie above the object, which is {height:.4g} m high"
+            message = (
+                f"the {what} at {figures(value, 4)} m would lie above the object, which is {figures(height, 4)} m high"
+            )
             out.append((field, Problem(field, message, "measure both again; the height is used")))
     for field, largest in (("base_width_m", "width_m"), ("base_depth_m", "depth_m")):
         value, most = values.get(field), values.get(largest)
         across = max(filter(None, (values.get("width_m"), values.get("depth_m"))), default=None)
         if value is not None and most is not None and across is not None and value > across * _TOLERANCE:
-            message = f"the base is {value:.4g} m wide, the object at its widest {across:.4g} m"
+            message = f"the base is {figures(value, 4)} m wide, the object at its widest {figures(across, 4)} m"
             remedy = "measure both again; the base is used, as overall sizes are often given without it"
             out.append(("", Problem(field, message, remedy)))
     out += _contact(values)
@@ -71,7 +74,10 @@ def _contact(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
         for extent, field in zip(polygon.extents, ("width_m", "depth_m"), strict=True):
             most = values.get(field)
             if most is not None and extent > most * _TOLERANCE:
-                message = f"the contact polygon is {extent:.4g} m across where the object itself is {most:.4g} m"
+                message = (
+                    f"the contact polygon is {figures(extent, 4)} m across where the object itself is "
+                    f"{figures(most, 4)} m"
+                )
                 remedy = "see whether unit and axes of the polygon are right (x along the width); the polygon is used"
                 out.append(("", Problem("contact_polygon", message, remedy)))
     least, tilt = values.get("contact_polygon_least"), values.get("tilt_angle_deg")
@@ -84,7 +90,8 @@ def _contact(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
         half = height * tan(radians(tilt))
         if half > 0.5 * base * _ROUGHLY:
             message = (
-                f"it tips at {tilt:.4g} degrees, as if its base were {2.0 * half:.4g} m wide; recorded are {base:.4g} m"
+                f"it tips at {figures(tilt, 4)} degrees, as if its base were {figures(2.0 * half, 4)} m wide; recorded "
+                f"are {figures(base, 4)} m"
             )
             remedy = "measure base, height of the centre of gravity and tilt again; the tilt test is used"
             out.append(("", Problem("tilt_angle_deg", message, remedy)))
@@ -97,8 +104,8 @@ def _density(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
     if mass is None or not all(sides):
         return []
     density = mass / (sides[0] * sides[1] * sides[2])
-    box = " x ".join(f"{side:.3g}" for side in sides)
-    told = f"{mass:.4g} kg in a box of {box} m is {density:.3g} kg/m3"
+    box = " x ".join(figures(side, 3) for side in sides)
+    told = f"{figures(mass, 4)} kg in a box of {box} m is {figures(density, 3)} kg/m3"
     remedy = "weigh and measure it again; the mass is left out until then"
     if not LIGHTEST <= density <= HEAVIEST:
         limit = "osmium, the heaviest metal" if density > HEAVIEST else "a mobile of wire"

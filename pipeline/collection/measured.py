@@ -16,6 +16,7 @@ from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.mapping import ColumnMap, Texts
 from pipeline.collection.measured_cell import written
 from pipeline.collection.record import TEXT_LIMIT
+from pipeline.quantities import figures
 from pipeline.records import Origin, Problem, Provenance
 
 FIELDS: Mapping[str, tuple[str, ...]] = {
@@ -145,7 +146,7 @@ def _fill_from(
             continue
         found = True
         if what == "mass" and choice.why.startswith(_PART):
-            message = f"only a part is weighed ({choice.value:.4g} kg), which is not the mass of the object"
+            message = f"only a part is weighed ({figures(choice.value, 4)} kg), which is not the mass of the object"
             cells.problems.append(Problem("mass_kg", message, "weigh the whole object"))
             continue
         for field in fields:
@@ -224,7 +225,10 @@ def _differs(field: str, value: float, choice: Choice, cells: Cells, texts_hold:
     if agree(value, choice.value, "mass" if field == "mass_kg" else "length"):
         return False
     unit, used = "kg" if field == "mass_kg" else "m", "text" if texts_hold else "column"
-    message = f"the text says {choice.value:.4g} {unit} ({choice.why}), its own column {value:.4g}; the {used} is used"
+    message = (
+        f"the text says {figures(choice.value, 4)} {unit} ({choice.why}), its own column {figures(value, 4)}; the "
+        f"{used} is used"
+    )
     cells.problems.append(Problem(field, message, "see which is right, and correct the other"))
     return True
 

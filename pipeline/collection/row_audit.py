@@ -15,6 +15,7 @@ from pipeline.collection.source_audit import SIDES, place_key, see_number, see_p
 from pipeline.collection.sources.measurement_terms import kind_of
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.unit_audit import FILL, SOLID, Evidence
+from pipeline.quantities import figures
 from pipeline.records import Problem
 
 EXAMPLES = 3
@@ -85,7 +86,7 @@ class RowAudit:
         see_pairs(found, cells.pairs)
         for name, column, text in cells.pairs:
             unit = plausible()[name].unit
-            told = f"its column says {column:.4g} {unit}, the text {text:.4g} {unit}"
+            told = f"its column says {figures(column, 4)} {unit}, the text {figures(text, 4)} {unit}"
             if found.ratios[name] != [1.0]:
                 self._keep(f"texts|{name}", row, number, told)
             for key, (_, does) in found.tallies.items():
@@ -98,8 +99,10 @@ class RowAudit:
             self._keep(f"steps|{unit}|{'tenths' if tenths > sixteenths else 'sixteenths'}", row, number, written)
         for (length, mass), (fill,) in found.fills.items():
             if not FILL[0] <= fill <= SOLID:
-                box = " x ".join(f"{values[side]:.3g}" for side in SIDES)
-                self._keep(f"fills|{length}|{mass}", row, number, f"{values['mass_kg']:.4g} kg in a box of {box} m")
+                box = " x ".join(figures(values[side], 3) for side in SIDES)
+                self._keep(
+                    f"fills|{length}|{mass}", row, number, f"{figures(values['mass_kg'], 4)} kg in a box of {box} m"
+                )
         return found
 
     def _see_units(self, found: Evidence, field: str, places: Sequence[int], row: Row, number: str) -> None:

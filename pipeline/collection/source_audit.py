@@ -14,7 +14,7 @@ from pipeline.collection.mapping import WRITTEN, ColumnMap, Holds
 from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.record import units_of
 from pipeline.collection.unit_audit import Evidence, Suspicion, wrong_units
-from pipeline.quantities import counted
+from pipeline.quantities import counted, figures
 
 FEWEST = 20
 """Records that a contradiction of the whole source is told by: fewer may be chance."""
@@ -187,7 +187,7 @@ def _texts(
         return
     middle = median(other)
     common = sum(abs(ratio / middle - 1.0) <= _NEAR for ratio in other if middle)
-    mostly = f", mostly {middle:.3g} times" if common > MOST * len(other) else ""
+    mostly = f", mostly {figures(middle, 3)} times" if common > MOST * len(other) else ""
     unit = _unit_by(middle, columns.get(name)) if mostly else None
     remedy = 'say in the mapping which of them holds: [holds] texts = "columns" or texts = "texts"'
     if unit is not None:

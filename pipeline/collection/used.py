@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pipeline.collection.measured import FIELDS_FILLED
 from pipeline.collection.record import KINDS, plausible
+from pipeline.quantities import figures
 from pipeline.records import Item
 
 SHOWN, AWAY, YES, NO = "on display", "not on display", "yes", "no"
@@ -33,7 +34,7 @@ def used_of(item: Item, field: str) -> str:
     if kind is None or value is None:
         return ""
     if kind in ("number", "integer"):
-        return f"{value:.4g} {plausible()[field].unit}".removesuffix(" -")
+        return f"{figures(value, 4)} {plausible()[field].unit}".removesuffix(" -")
     if kind == "flag":
         return (SHOWN if value else AWAY) if field == "on_display" else (YES if value else NO)
     if kind in ("polygon", "list"):

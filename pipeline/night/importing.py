@@ -24,6 +24,7 @@ from pipeline.collection.unit_audit import Suspicion
 from pipeline.night.source_state import mapping_of, source_key
 from pipeline.night.unknown_names import unknown_names
 from pipeline.operations.workspace import IMPORTS, Workspace
+from pipeline.quantities import figures
 from pipeline.records import Item, Problem
 from pipeline.report.text import safe_cell
 from pipeline.resources import replacing
@@ -162,8 +163,8 @@ def proposed(
 
 def _in_words(item: Item) -> str:
     sides = (("H", item.height_m), ("W", item.width_m), ("D", item.depth_m))
-    size = " x ".join(f"{name} {100.0 * value:.4g}" for name, value in sides if value is not None)
-    mass = "" if item.mass_kg is None else f", {item.mass_kg:.3g} kg"
+    size = " x ".join(f"{name} {figures(100.0 * value, 4)}" for name, value in sides if value is not None)
+    mass = "" if item.mass_kg is None else f", {figures(item.mass_kg, 3)} kg"
     what = " ".join(filter(None, (item.object_name, f"{item.title[:50]!r}", item.medium[:40])))
     return f"{item.object_number} | {item.gallery} | {what} | {f'{size} cm' if size else 'no size'}{mass}"
 

@@ -24,7 +24,7 @@ from pipeline.night.floors import floors_with
 from pipeline.night.prepare import assessed, popular
 from pipeline.night.run import named
 from pipeline.operations.workspace import Workspace, charts_of
-from pipeline.quantities import Array
+from pipeline.quantities import Array, figures
 from pipeline.records import Estimate, Finding, Item, Likelihood, Numerics, Progress, Recommendation, Scene
 from pipeline.records.numerics import AUTO, CHART, SCAN
 from pipeline.store.decisions import InForce, decisions_in_force
@@ -245,7 +245,7 @@ def _named(work: Work) -> list[str]:
         best = int(spans.rows[0, side])
         for row in spans.rows[:, side].tolist():
             other = [
-                f"{name} = {float(column[row]):.4g}" for name, column in work.values.items()
+                f"{name} = {figures(float(column[row]), 4)}" for name, column in work.values.items()
                 if column[row] != column[best] and not isnan(column[row])
             ]  # fmt: skip
             angle = float(work.angles[row])

@@ -99,7 +99,7 @@ def test_a_broken_row_of_a_table_is_named(tmp_path: Path) -> None:
 
 def test_folders_that_hold_no_tables(tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
-    with pytest.raises(CollectionError, match="a folder without CSV or JSON files"):
+    with pytest.raises(CollectionError, match="a folder without CSV, JSON or XML files"):
         guess(tmp_path / "empty")
     with pytest.raises(CollectionError, match="0 CSV files"), tables.as_database(tmp_path, "utf-8", ","):
         pass

@@ -14,6 +14,7 @@ from pipeline.analysis.house.effect import HouseEffect, HouseStatement
 from pipeline.analysis.house.rule import ABOVE, CRITERIA, QUANTITIES, SLOTS, STANDING, HouseRule, Span
 from pipeline.analysis.rule_table import stuff, words_of
 from pipeline.errors import InputError
+from pipeline.quantities import figures
 from pipeline.records import Furniture, Item, Mount, Support
 
 _ON_WALLS = frozenset({Furniture.WALL, Furniture.RAIL})
@@ -264,4 +265,4 @@ def _agrees(recorded: float | StrEnum, value: Span | StrEnum) -> bool:
 def _shown(value: float | StrEnum | Span) -> str:
     if isinstance(value, Span):
         return f"{value.best:g}" if value.low == value.high else f"{value.best:g} ({value.low:g} to {value.high:g})"
-    return str(value) if isinstance(value, StrEnum) else f"{value:.4g}"
+    return str(value) if isinstance(value, StrEnum) else figures(value, 4)

@@ -7,6 +7,7 @@ from math import hypot, pi
 
 from pipeline.collection.dimensions.parts import DETAILS, FRAMED, is_base, is_detail
 from pipeline.collection.dimensions.result import Choice, Chosen, DimensionPart, Dimensions
+from pipeline.quantities import figures
 
 _FACES = {"mount": 4, "mat": 4, "sheet": 5, "page": 5, "image": 6, "composition": 6, "plate": 6, "block": 6}
 HANGS = "framed, as it hangs"
@@ -156,7 +157,7 @@ def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
         if field not in out and part.value is not None:
             said = ", as" if part.qualifiers else ""
             if part.low is not None and part.low != part.value:
-                how += f", the larger end of {part.low:.4g} to {part.value:.4g} m"
+                how += f", the larger end of {figures(part.low, 4)} to {figures(part.value, 4)} m"
             why = f"{how}, {reason}{said} {', '.join(part.qualifiers)}".rstrip()
             out[field] = Choice(part.value * factor, part.start, part.end, why)
 

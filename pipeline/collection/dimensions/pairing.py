@@ -8,6 +8,7 @@ from pipeline.collection.dimensions.lexicon import LexiconUnit, units
 from pipeline.collection.dimensions.quantities import DimensionQuantity, troy
 from pipeline.collection.dimensions.result import DimensionNote
 from pipeline.collection.record import plausible
+from pipeline.quantities import figures
 
 _CLOSE = {"length": 0.003, "mass": 0.003}
 _SHARE = 0.03
@@ -158,7 +159,7 @@ def _infer(open_: list[DimensionQuantity], others: list[DimensionQuantity], note
 def _judge(a: DimensionQuantity, b: DimensionQuantity, notes: list[DimensionNote]) -> None:
     """Two readings contradict each other: find the likely slip, believe one, and say why."""
     si, kind = b.si(), a.kind
-    shown = f"{a.si():.4g} against {si:.4g} {'m' if kind == 'length' else 'kg'}"
+    shown = f"{figures(a.si(), 4)} against {figures(si, 4)} {'m' if kind == 'length' else 'kg'}"
     reason = ""
     glued = _unglued(a, si)
     if kind == "length" and not a.written and a.unit is not None:

@@ -358,6 +358,7 @@ def _forms(name: str) -> Iterator[str]:
     path = path_of(name)
     if path[-1] != name:
         yield plain(path[-1])
+        yield plain(unit_in(path[-1])[0])
     # "measurement_height", "ca_objects.dimensions.dimensions_height"
     words = plain(unit_in(path[-1])[0]).split()
     about = next((at for at, word in enumerate(words) if word not in _ABOUT), 0)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, BinaryIO, cast
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, columns_of
@@ -20,6 +21,7 @@ from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.opening import open_source
 from pipeline.collection.sources.files import head_of, unpacked, unreadable
+from pipeline.collection.sources.folders import Folder
 from pipeline.collection.sources.json_objects import list_in
 from pipeline.collection.sources.json_records import files_of as json_files
 from pipeline.collection.sources.json_records import read_values
@@ -29,6 +31,7 @@ from pipeline.collection.sources.registry import recognised
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.tables import files_of
 from pipeline.collection.sources.xml_objects import record_path
+from pipeline.collection.sources.xml_records import XML_FILES
 
 READ = 2000
 """Rows that the guess is made from."""
@@ -84,7 +87,7 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         if kind is not None:
             return _known(kind.name, path, told)
         raise CollectionError(
-            f"{path}: a folder without CSV or JSON files; name the museum's export itself, or the folder with its "
+            f"{path}: a folder without CSV, JSON or XML files; name the museum's export itself, or the folder with its "
             "tables"
         )
     try:
@@ -166,14 +169,22 @@ def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
     return {"format": "json"} | ({"records": where} if where else {})
 
 
+def _xml_files(path: Path, stack: ExitStack) -> Iterator[tuple[str, BinaryIO]]:
+    if path.is_dir():
+        yield from Folder(path, XML_FILES, STANDARD.bytes).each()
+        return
+    try:
+        packed = stack.enter_context(path.open("rb"))
+        yield path.name, stack.enter_context(closing(unpacked(packed, path.name, STANDARD.bytes)))
+    except OSError as problem:
+        raise unreadable(path, problem) from problem
+
+
 def _xml_records(path: Path, told: GuessNotes) -> str:
     where = told.choices.get("records", "")
     if not where:
-        try:
-            with path.open("rb") as packed, closing(unpacked(packed, path.name, STANDARD.bytes)) as binary:
-                at, others = record_path(binary, path.name)
-        except OSError as problem:
-            raise unreadable(path, problem) from problem
+        with ExitStack() as stack:
+            at, others = record_path(partial(_xml_files, path, stack), path.name)
         where = "/".join(at)
         if others:
             told.doubts.append(

@@ -28,7 +28,7 @@ from pydantic import Field
 from pipeline.collection.sources.base import HEAD, FileSource, Name, Request, SourceSettings
 from pipeline.collection.sources.measurements import COLUMNS, MeasuredSettings, Measurements, joined, row_of
 from pipeline.collection.sources.rows import Row
-from pipeline.collection.sources.xml_records import XmlRecords
+from pipeline.collection.sources.xml_records import XML_FILES, XmlRecords
 
 _LANG = "{http://www.w3.org/XML/1998/namespace}lang"
 _FIELDS: dict[str, tuple[str, ...]] = {
@@ -148,6 +148,7 @@ class Adlib(FileSource):
     name = "adlib"
     title = "an Adlib XML file"
     Settings: ClassVar[type[SourceSettings]] = AdlibSettings
+    folder = XML_FILES
 
     def recognises(self, where: str, head: bytes) -> bool:  # noqa: ARG002
         """Say whether its root, or a record with its number, is named at its beginning."""

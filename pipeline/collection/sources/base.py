@@ -18,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import Limits
 from pipeline.collection.sources.files import unpacked, unreadable
+from pipeline.collection.sources.folders import Folder, line_of
 from pipeline.collection.sources.rows import Row
 
 Name = Annotated[str, Field(min_length=1)]
@@ -168,6 +169,8 @@ class FileSource(Source):
     """A kind of file: opening, unpacking (gzip), its limit of bytes and its digest are done; ``rows`` reads it."""
 
     is_file = True
+    folder: ClassVar[tuple[str, ...]] = ()
+    """Names of the files that count in a folder of such files, as patterns; (): no folder is one."""
 
     @abstractmethod
     def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
@@ -183,10 +186,46 @@ class FileSource(Source):
             What is asked for.
         """
 
+    def rows_of(self, folder: Folder, request: Request) -> Iterator[Row]:
+        """Yield the header and the rows of all files of a folder, whose headers are the same.
+
+        Parameters
+        ----------
+        folder, request : Folder, Request
+            The files, and what is asked for.
+
+        Yields
+        ------
+        Row
+            First the header.
+
+        Raises
+        ------
+        CollectionError
+            For a file with another header.
+        """
+        head: list[str] | None = None
+        number = 0
+        for name, binary in folder.each():
+            rows = self.rows(cast(BufferedReader, binary), name, request)
+            first = next(rows)
+            if head is None:
+                head = first.cells
+                yield first
+            elif first.cells != head:
+                raise CollectionError(f"{name}: has other columns than the files before it; read it by itself")
+            for row in rows:
+                number += 1
+                yield row._replace(number=number, line=line_of(name, row.line))
+
     @contextmanager
     def open(self, request: Request) -> Iterator[Opened]:
-        """Open the file."""
+        """Open the file, or all files of the folder."""
         path = Path(request.where)
+        if self.folder and path.is_dir():
+            folder = Folder(path, self.folder, request.limits.bytes)
+            yield Opened(path.name, self.rows_of(folder, request), folder.digest)
+            return
         with ExitStack() as stack:
             packed = stack.enter_context(_open(path, request.limits.bytes))
             digest = _digest(packed, path.name)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import codecs
-import hashlib
 import json
 import re
 from abc import abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from io import BufferedReader
 from pathlib import Path
@@ -16,7 +15,7 @@ from typing import Any, BinaryIO, ClassVar
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Opened, Request
 from pipeline.collection.sources.delimited import RECORD_LIMIT
-from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.folders import Folder, files_in, line_of
 from pipeline.collection.sources.rows import Row, TypedNumber
 
 FILES = ("*.json", "*.jsonld", "*.jsonl", "*.ndjson")
@@ -26,12 +25,6 @@ Values = Callable[[], Iterator[tuple[int, Any]]]
 """Gives the lines and values of a source from its beginning, as often as it is asked."""
 
 _BLOCK = 1 << 16
-
-
-class Line(int):
-    """A line, with the file of a folder that it stands in."""
-
-    file = ""
 
 
 def _all_said(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -91,30 +84,8 @@ def read_values(stream: BinaryIO, file: str, *, exact: bool = False) -> Iterator
 
 
 def files_of(folder: Path, *, deep: bool = False) -> list[Path]:
-    """Return the JSON files of a folder by name, with those of its own folders where it is read deeply.
-
-    Parameters
-    ----------
-    folder : Path
-        That exists.
-    deep : bool
-        Whether its folders count; hidden ones never do.
-
-    Returns
-    -------
-    list of Path
-
-    Raises
-    ------
-    CollectionError
-        For a folder that cannot be read.
-    """
-    look = folder.rglob if deep else folder.glob
-    try:
-        found = {path for pattern in FILES for path in look(pattern) if path.is_file()}
-    except OSError as problem:
-        raise unreadable(folder, problem) from problem
-    return sorted(path for path in found if not any(part.startswith(".") for part in path.relative_to(folder).parts))
+    """Return the JSON files of a folder: see `folders.files_in`."""
+    return files_in(folder, FILES, deep=deep)
 
 
 class JsonSource(FileSource):
@@ -147,28 +118,14 @@ class JsonSource(FileSource):
             with super().open(request) as opened:
                 yield opened
             return
-        files = files_of(path, deep=self.deep)
-        if not files:
-            raise CollectionError(f"{path}: a folder without {', '.join(FILES)}; name the museum's export itself")
-        try:
-            size = sum(file.stat().st_size for file in files)
-        except OSError as problem:
-            raise unreadable(path, problem) from problem
-        if size > request.limits.bytes:
-            raise CollectionError(
-                f"{path}: {size:,} bytes, more than {request.limits.bytes:,}; export fewer objects, or raise [limits] "
-                "megabytes"
-            )
-        sums: dict[str, bytes] = {}
+        folder = Folder(path, FILES, request.limits.bytes, deep=self.deep)
 
         def values() -> Iterator[tuple[int, Any]]:
-            return _values_of(path, files, sums, exact=self.exact)
+            for name, binary in folder.each():
+                for number, value in read_values(binary, name, exact=self.exact):
+                    yield line_of(name, number), value
 
-        def digest() -> str:
-            whole = b"".join(f"{name}\0".encode("utf-8", "surrogatepass") + one for name, one in sums.items())
-            return hashlib.sha256(whole).hexdigest()
-
-        yield Opened(path.name, self.records(values, path.name, request), digest)
+        yield Opened(path.name, self.records(values, path.name, request), folder.digest)
 
     def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
         """Yield the header and the objects.
@@ -189,25 +146,6 @@ class JsonSource(FileSource):
             return read_values(binary, file, exact=self.exact)
 
         return self.records(values, file, request)
-
-
-def _values_of(
-    folder: Path, files: Sequence[Path], sums: dict[str, bytes], *, exact: bool
-) -> Iterator[tuple[int, Any]]:
-    """Yield the values of files; the checksum of what each is told from is noted once, however often they are read."""
-    for path in files:
-        name = path.relative_to(folder).as_posix()
-        try:
-            with path.open("rb") as binary:
-                if name not in sums:
-                    sums[name] = hashlib.file_digest(binary, "sha256").digest()
-                    binary.seek(0)
-                for number, value in read_values(binary, name, exact=exact):
-                    line = Line(number)
-                    line.file = name
-                    yield line, value
-        except OSError as problem:
-            raise unreadable(name, problem) from problem
 
 
 class _Reader:

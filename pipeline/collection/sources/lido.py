@@ -41,7 +41,7 @@ from pipeline.collection.sources.lido_terms import FORMER, LANGUAGES, PRODUCTION
 from pipeline.collection.sources.measurement_terms import KIND_CONCEPTS, KIND_OF, PART_OF, UNIT_CONCEPTS
 from pipeline.collection.sources.measurements import MEASURED
 from pipeline.collection.sources.rows import Row
-from pipeline.collection.sources.xml_records import XmlRecords
+from pipeline.collection.sources.xml_records import XML_FILES, XmlRecords
 
 COLUMNS = (
     "object_number",
@@ -384,6 +384,7 @@ class Lido(FileSource):
     name = "lido"
     title = "a LIDO file"
     Settings = LidoSettings
+    folder = XML_FILES
 
     def recognises(self, where: str, head: bytes) -> bool:  # noqa: ARG002
         """Say whether the format's namespace is named at its beginning."""

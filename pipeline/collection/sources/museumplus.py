@@ -28,7 +28,7 @@ from pipeline.collection.sources.base import HEAD, FileSource, Request, SourceSe
 from pipeline.collection.sources.measurement_terms import kind_of, part_of
 from pipeline.collection.sources.measurements import COLUMNS, MeasuredSettings, Measurements, joined, row_of
 from pipeline.collection.sources.rows import Row
-from pipeline.collection.sources.xml_records import XmlRecords
+from pipeline.collection.sources.xml_records import XML_FILES, XmlRecords
 
 _RIA = "{http://www.zetcom.com/ria/ws/module}"
 
@@ -223,6 +223,7 @@ class MuseumPlus(FileSource):
     name = "museumplus"
     title = "a MuseumPlus RIA file"
     Settings: ClassVar[type[SourceSettings]] = MuseumPlusSettings
+    folder = XML_FILES
 
     def recognises(self, where: str, head: bytes) -> bool:  # noqa: ARG002
         """Say whether the format's namespace is named at its beginning."""

@@ -36,6 +36,9 @@ _LAST = {
 }
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 _WITH_UNIT = re.compile(rf"({NUMBER.pattern})\s*([^\W\d]+\.?|\")", re.ASCII)
+_SPOKEN = ("lang", "language", "id")
+"""Names of what may look like a unit, and is none."""
+
 _SCALARS = (str, int, float, bool)
 
 
@@ -157,13 +160,20 @@ def _measurement(value: Any) -> tuple[str, str, str, str] | None:
     if not isinstance(value, dict):
         return None
     number = next((name for name in _named(value, _VALUES) if _amount(_text(value[name]))), None)
-    kinds = [name for name in _named(value, _KINDS) if name != number and _text(value[name])]
-    kind = next((name for name in kinds if kind_of(_text(value[name]))), kinds[0] if kinds else None)
+    able = [name for name in value if name != number and _text(value[name])]
+    # In any language: what is a kind of measurement by what it says.
+    kind = next(
+        (name for name in [*_named(value, _KINDS), *able] if name in able and kind_of(_text(value[name]))), None
+    )
+    kind = kind or next((name for name in _named(value, _KINDS) if name in able), None)
     if number is None or kind is None:
         return None
     amount, within = _amount(_text(value[number])) or ("", "")
-    unit, part = (next((_text(value[name]) for name in _named(value, those) if value[name]), "")
-                  for those in (_UNITS, _PARTS))  # fmt: skip
+    units = [*_named(value, _UNITS), *(name for name in able if name not in _SPOKEN and unit_of(_text(value[name])))]
+    unit, part = (
+        next((_text(value[name]) for name in those if name in able and name != kind), "")
+        for those in (units, _named(value, _PARTS))
+    )
     return _text(value[kind]), amount, unit or within, part
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from pipeline.collection.sources.adlib import Adlib
-from pipeline.collection.sources.base import Source, SourceSettings
+from pipeline.collection.sources.base import HEAD, FileSource, Source, SourceSettings
 from pipeline.collection.sources.database import Database
 from pipeline.collection.sources.delimited import Csv, Tsv
+from pipeline.collection.sources.files import head_of
+from pipeline.collection.sources.folders import files_in
 from pipeline.collection.sources.json_objects import Json
 from pipeline.collection.sources.lido import Lido
 from pipeline.collection.sources.linked_art import LinkedArt
@@ -15,6 +17,7 @@ from pipeline.collection.sources.museumplus import MuseumPlus
 from pipeline.collection.sources.tables import Tables
 from pipeline.collection.sources.xlsx import Xlsx
 from pipeline.collection.sources.xml_objects import Xml
+from pipeline.collection.sources.xml_records import XML_FILES
 from pipeline.errors import InputError
 from pipeline.extensions import Registry
 
@@ -67,7 +70,13 @@ def recognised(where: str, head: bytes) -> Source | None:
     Source or None
         None where none is sure.
     """
-    return next((source for source in SOURCES if source.recognises(where, head)), None)
+    found = next((source for source in SOURCES if source.recognises(where, head)), None)
+    if found is None and not is_address(where) and Path(where).is_dir():
+        # What a folder of XML is, its first file says.
+        first = next(iter(files_in(Path(where), XML_FILES)), None)
+        found = None if first is None else recognised(str(first), head_of(first, HEAD))
+        return found if isinstance(found, FileSource) and found.folder else None
+    return found
 
 
 def is_address(where: str | Path) -> bool:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
 from io import BufferedReader
 from typing import Any, BinaryIO, ClassVar, Literal
@@ -25,11 +25,12 @@ from pydantic import Field
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Request, SourceSettings
+from pipeline.collection.sources.folders import Folder, line_of
 from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.collection.sources.measurements import NUMBER, MeasuredSettings
 from pipeline.collection.sources.nested import is_measurement, object_rows
 from pipeline.collection.sources.rows import Row
-from pipeline.collection.sources.xml_records import EXPORT_AGAIN, XmlRecords, local_name, safely_parsed
+from pipeline.collection.sources.xml_records import EXPORT_AGAIN, XML_FILES, XmlRecords, local_name, safely_parsed
 
 LOOKED_AT = 200_000
 """Elements from which it is told which of them are the objects."""
@@ -68,12 +69,14 @@ _OF_THE_EXPORT = frozenset({
 })  # fmt: skip
 """What an element around objects says of the export, and of no object."""
 
-_UNITS = ("unit", "units", "uom", "einheit", "unite", "eenheid")
 _SCHEMA = "{http://www.w3.org/2001/XMLSchema}"
 _INSTANCE = "{http://www.w3.org/2001/XMLSchema-instance}"
 _FILEMAKER = "FMPXMLRESULT"
 
 Path = tuple[str, ...]
+
+Files = Callable[[], Iterable[tuple[str, BinaryIO]]]
+"""Gives the names of files, and the files, as often as it is asked."""
 
 
 class XmlSettings(MeasuredSettings):
@@ -93,6 +96,7 @@ class Xml(FileSource):
     name = "xml"
     title = "an XML file"
     Settings: ClassVar[type[SourceSettings]] = XmlSettings
+    folder = XML_FILES
 
     def recognises(self, where: str, head: bytes) -> bool:  # noqa: ARG002
         """Say whether it begins as XML does that may hold objects: no web page, no drawing, no workbook."""
@@ -117,26 +121,50 @@ class Xml(FileSource):
         CollectionError
             For a file that is damaged, declares a document type, or holds no objects.
         """
-        settings = request.settings
-        path = tuple(filter(None, settings.records.split("/"))) or record_path(binary, file)[0]
-        remedy = "say in the mapping which elements are the objects, [source] records, or export fewer fields"
 
-        def objects() -> Iterator[tuple[int, Mapping[str, Any]]]:
+        def files() -> Iterator[tuple[str, BinaryIO]]:
             binary.seek(0)
-            return _objects(binary, file, path)
+            yield file, binary
 
-        return object_rows(objects, file, settings.unit, remedy)
+        return _rows(files, file, request.settings)
+
+    def rows_of(self, folder: Folder, request: Request) -> Iterator[Row]:
+        """Yield the header and the objects of all files of a folder.
+
+        Parameters
+        ----------
+        folder, request : Folder, Request
+            As of `FileSource.rows_of`.
+
+        Yields
+        ------
+        Row
+            First the header.
+        """
+        return _rows(folder.each, folder.path.name, request.settings)
 
 
-def record_path(binary: BinaryIO, file: str) -> tuple[Path, list[str]]:
-    """Return which elements of a file are its objects: those that come again and again and say nearly all of it.
+def _rows(files: Files, name: str, settings: XmlSettings) -> Iterator[Row]:
+    path = tuple(filter(None, settings.records.split("/"))) or record_path(files, name)[0]
+    remedy = "say in the mapping which elements are the objects, [source] records, or export fewer fields"
+
+    def objects() -> Iterator[tuple[int, Mapping[str, Any]]]:
+        for file, binary in files():
+            for line, one in _objects(binary, file, path):
+                yield line_of(file, line), one
+
+    return object_rows(objects, name, settings.unit, remedy)
+
+
+def record_path(files: Files, name: str) -> tuple[Path, list[str]]:
+    """Return which elements of files are the objects: those that come again and again and say nearly all of it.
 
     Parameters
     ----------
-    binary : binary stream
-        The file; read from its beginning.
-    file : str
-        Its name in messages.
+    files : callable
+        Gives their names and the files, each at its beginning.
+    name : str
+        What they are called together, in messages.
 
     Returns
     -------
@@ -150,9 +178,12 @@ def record_path(binary: BinaryIO, file: str) -> tuple[Path, list[str]]:
     CollectionError
         For a file that is damaged, declares a document type, or in which none is found.
     """
-    binary.seek(0)
-    found = _tally(binary, file)
-    path = (_FILEMAKER, "RESULTSET", "ROW") if found.root == _FILEMAKER else _likeliest(found, file)
+    found = _Tally()
+    for file, binary in files():
+        _tally(found, binary, file)
+        if sum(found.count.values()) >= LOOKED_AT:
+            break
+    path = (_FILEMAKER, "RESULTSET", "ROW") if found.root == _FILEMAKER else _likeliest(found, name)
     others = [
         one
         for one in found.several()
@@ -173,7 +204,7 @@ def _likeliest(found: _Tally, file: str) -> Path:
     single = [
         path
         for path, count in found.count.items()
-        if count == 1 and len(found.names[path]) >= FEWEST_SAID and found.said[path] >= COVERED * whole
+        if count == found.files and len(found.names[path]) >= FEWEST_SAID and found.said[path] >= COVERED * whole
     ]
     alone = max(single, key=lambda path: (len(found.names[path]), -len(path)), default=None)
     if best is not None and (alone is None or len(found.names[best]) >= len(found.names[alone])):
@@ -189,11 +220,12 @@ def _likeliest(found: _Tally, file: str) -> Path:
 class _Tally:
     """What is known of the elements of a file by their places.
 
-    root : name of the first element;  count : how many there are;  said : texts and attributes within them
-    names : of what is right within them
+    files : how many there are;  root : name of the first element of the last;  count : how many there are
+    said : texts and attributes within them;  names : of what is right within them
     """
 
     def __init__(self) -> None:
+        self.files = 0
         self.root = ""
         self.count: Counter[Path] = Counter()
         self.said: Counter[Path] = Counter()
@@ -212,20 +244,25 @@ class _Tally:
 
     def several(self) -> list[Path]:
         """Return the places of which there are several elements, each of which says more than one thing."""
-        return [path for path, count in self.count.items() if count > 1 < len(path) and len(self.names[path]) > 1]
+        # The outermost element of a file is an object where each file has one.
+        least = 1 if self.files > 1 else 2
+        return [
+            path for path, count in self.count.items() if count > 1 and len(path) >= least and len(self.names[path]) > 1
+        ]
 
 
-def _tally(binary: BinaryIO, file: str) -> _Tally:
+def _tally(found: _Tally, binary: BinaryIO, file: str) -> None:
     from lxml import etree
 
-    found, path = _Tally(), list[str]()
+    path = list[str]()
+    found.files += 1
     events = safely_parsed(binary)
     seen = 0
     try:
         for event, element in events:
             if event == "start":
                 path.append(local_name(element))
-                if not found.root:
+                if len(path) == 1:
                     found.root = path[0]
                     if element.getroottree().docinfo.doctype:
                         raise CollectionError(
@@ -247,7 +284,6 @@ def _tally(binary: BinaryIO, file: str) -> _Tally:
         raise CollectionError(
             f"{file}, line {problem.lineno or 1}: not well-formed XML: {str(problem)[:200]}; {EXPORT_AGAIN}"
         ) from problem
-    return found
 
 
 def _innermost(path: Path, found: _Tally) -> Path:
@@ -311,9 +347,12 @@ def _value(element: Any) -> Any:
     told = _attributes(element)
     if text or not (children or told):
         return _texted(text, told)
+    listed = not told
     for child in children:
         _put(told, _called(child), _value(child), child)
-    return told
+    # <arr name="materials"><str>wood</str><str>gold</str></arr>: a list, whose entries have no name.
+    (only,) = told if listed and len(told) == 1 else ("",)
+    return told[only] if only.casefold() in _UNTOLD else told
 
 
 def _texted(text: str, told: dict[str, Any]) -> Any:
@@ -322,7 +361,7 @@ def _texted(text: str, told: dict[str, Any]) -> Any:
     if told and is_measurement(entry):
         return entry
     if NUMBER.fullmatch(text):
-        unit = next((one for name, one in told.items() if name.casefold() in _UNITS and unit_of(one)), "")
+        unit = next((one for one in told.values() if unit_of(one)), "")
         return f"{text} {unit}".strip()
     return text
 
@@ -337,7 +376,7 @@ def _put(into: dict[str, Any], name: str, value: Any, element: Any) -> None:
         into[name] = [value] if measured else value
     if isinstance(value, str) and value:
         for attribute, said in _attributes(element).items():
-            if said != name and not (attribute.casefold() in _UNITS and value.endswith(said)):
+            if said != name and not value.endswith(f" {said}"):
                 _put(into, f"{name}@{attribute}", said, element.makeelement("none"))
 
 

@@ -9,6 +9,9 @@ from typing import Any, BinaryIO
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.delimited import RECORD_LIMIT
 
+XML_FILES = ("*.xml", "*.XML")
+"""What counts in a folder."""
+
 EXPORT_AGAIN = "export the file again, and see whether it was cut off on its way"
 """What mends a file that ends too early."""
 

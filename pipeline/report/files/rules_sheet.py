@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from pipeline.quantities import LENGTHS, counted
+from pipeline.quantities import LENGTHS, counted, figures
 from pipeline.report.files.sheet_cells import HEADER_ROW, headed, to_fill_in, write_cell
 from pipeline.report.text import words
 
@@ -81,7 +81,7 @@ def _texts(question: RuleQuestion, length: str) -> dict[str, str]:
     why = f"one answer for {counted(question.objects, 'object')}"
     if question.low is not None and question.high is not None:
         of = "" if unit == "-" else f" {unit}"
-        why += f"; taken as {question.low / per:.3g} to {question.high / per:.3g}{of} now"
+        why += f"; taken as {figures(question.low / per, 3)} to {figures(question.high / per, 3)}{of} now"
     if question.settles:
         why += f"; would settle about {counted(max(1, round(question.settles)), 'case')}"
     if question.unlocks:

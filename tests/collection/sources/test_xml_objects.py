@@ -191,6 +191,26 @@ def test_one_object_alone_is_one(dialect: str, tmp_path: Path) -> None:
     assert read(path) == [THINGS[0]]
 
 
+@pytest.mark.parametrize("dialect", sorted(DIALECTS.keys() - {"attributed", "grouped"}))
+def test_a_folder_has_a_file_for_each_object(dialect: str, tmp_path: Path) -> None:
+    for at, thing in enumerate(THINGS):
+        (tmp_path / f"{at}.xml").write_text(DIALECTS[dialect]((thing,)), encoding="utf-8")
+    (tmp_path / "readme.txt").write_text("of the export", encoding="utf-8")
+    assert read(tmp_path) == [*THINGS]
+
+
+def test_a_root_may_be_an_object_where_each_file_has_one(tmp_path: Path) -> None:
+    for at, (number, name, material, high, wide, place, shown) in enumerate(THINGS):
+        (tmp_path / f"{at}.xml").write_text(
+            f"<objekt><inventarnummer>{number}</inventarnummer><titel>{escape(name)}</titel><material>{material}"
+            f"</material><masse><mass art='Höhe' einheit='cm'>{high:g}</mass><mass art='Breite' einheit='cm'>{wide:g}"
+            f"</mass></masse><standort>{place}</standort><ausgestellt>{'ja' if shown else 'nein'}</ausgestellt>"
+            "</objekt>",
+            encoding="utf-8",
+        )
+    assert read(tmp_path) == [*THINGS]
+
+
 def test_encodings_and_packing(tmp_path: Path) -> None:
     text = dimensioned(THINGS)
     for name, content in {
@@ -215,9 +235,9 @@ def test_where_the_objects_are_is_found(tmp_path: Path) -> None:
         path = tmp_path / f"{name}.xml"
         path.write_text(DIALECTS[name](THINGS * 20), encoding="utf-8")
         with path.open("rb") as binary:
-            found, others = record_path(binary, path.name)
-            assert "/".join(found) == where
-            assert not others
+            found, others = record_path(lambda binary=binary: [("x", binary)], path.name)
+        assert "/".join(found) == where
+        assert not others
 
 
 def test_tables_beside_the_objects_are_told(tmp_path: Path) -> None:
