@@ -130,9 +130,7 @@ def test_of_several_sheets_the_one_like_an_inventory_is_taken_and_named(workbook
 
 
 def test_a_workbook_read_as_text_says_so(workbook: Path) -> None:
-    with pytest.raises(
-        CollectionError, match=r'an Excel workbook, and the mapping carnegie reads csv; say format = "xlsx"'
-    ):
+    with pytest.raises(CollectionError, match=r'a workbook, and the mapping carnegie reads csv; say format = "xlsx"'):
         read_items(workbook, load_mapping("carnegie"))
 
 

@@ -117,7 +117,7 @@ class Source(ABC):
     Another package offers one under the entry point group ``kouros.sources``.  The contract:
 
     1.  ``name`` is what a mapping says as [source] format; no other source has it.  ``title`` is the kind of source in
-        words, with its article, for messages: "an Excel workbook".
+        words, with its article, for messages: "a workbook".
     2.  ``Settings`` is the subclass of `SourceSettings` with the source's own keys of [source]: types, limits and
         descriptions.  Kouros validates a mapping by it, and passes it on as ``request.settings``.
     3.  ``recognises`` says of a path or an address, and the first bytes of a file, whether it surely is of this kind.

@@ -106,9 +106,9 @@ def check_archive(archive: ZipFile, file: str) -> None:
     """
     entries = archive.infolist()
     names = {entry.filename for entry in entries}
-    if "xl/workbook.bin" in names or any(name.startswith("content.xml") for name in names):
+    if "xl/workbook.bin" in names:
         raise CollectionError(f"{file}: a workbook, but not an .xlsx one; {SAVE_AGAIN}")
-    if "[Content_Types].xml" not in names:
+    if "[Content_Types].xml" not in names and not is_open_document(archive):
         raise CollectionError(
             f"{file}: a zip archive, but no workbook; {SAVE_AGAIN}; where CSV files are in it, unpack it and name "
             "the folder"
@@ -122,6 +122,12 @@ def check_archive(archive: ZipFile, file: str) -> None:
         raise CollectionError(
             f"{file}: {total:,} bytes unpacked, more than {TOTAL_LIMIT:,}; export fewer columns or objects"
         )
+
+
+def is_open_document(archive: ZipFile) -> bool:
+    """Whether an archive is a spreadsheet of LibreOffice (.ods), and none of Excel."""
+    names = archive.namelist()
+    return "content.xml" in names and "[Content_Types].xml" not in names
 
 
 def _check_entry(entry: ZipInfo, file: str) -> None:

@@ -1,4 +1,4 @@
-"""The rows of a sheet of an .xlsx workbook: typed cells as texts, and a fault for what was never typed in."""
+"""The rows of a sheet of an .xlsx or .ods workbook: typed cells as texts, and a fault for what was never typed in."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from pipeline.collection.sources.base import FileSource, Name, Request
 from pipeline.collection.sources.delimited import HeadedSettings
 from pipeline.collection.sources.files import stream_of
 from pipeline.collection.sources.heads import joined_heads
+from pipeline.collection.sources.opendocument import OpenBook, OpenCell, OpenPage
 from pipeline.collection.sources.rows import Row, TypedNumber, as_text
 from pipeline.collection.sources.shown import is_moment, shown
 from pipeline.collection.sources.workbook import (
@@ -31,6 +32,7 @@ from pipeline.collection.sources.workbook import (
     Survey,
     check_archive,
     check_kind,
+    is_open_document,
     survey,
 )
 
@@ -115,9 +117,12 @@ def read_sheet(
             check_kind(stream, file)
             archive = stack.enter_context(zipfile.ZipFile(stream))
             check_archive(archive, file)
-            page = _page(_load(stream, file), file, sheet)
-            with archive.open(page._worksheet_path) as part:
-                found = survey(part, file, page.title)
+            page = _page(_load(stream, archive, file), file, sheet)
+            if isinstance(page, OpenPage):
+                found = page.survey()
+            else:
+                with archive.open(page._worksheet_path) as part:
+                    found = survey(part, file, page.title)
         except CollectionError:
             raise
         except _DAMAGE as problem:
@@ -193,15 +198,18 @@ def _workbook(path: Path) -> Iterator[Any]:
         try:
             stream = stream_of(path, path.name, stack)
             check_kind(stream, path.name)
-            check_archive(stack.enter_context(zipfile.ZipFile(stream)), path.name)
-            yield _load(stream, path.name)
+            archive = stack.enter_context(zipfile.ZipFile(stream))
+            check_archive(archive, path.name)
+            yield _load(stream, archive, path.name)
         except CollectionError:
             raise
         except _DAMAGE as problem:
             raise _damaged(path.name, problem) from problem
 
 
-def _load(stream: BinaryIO, file: str) -> Any:
+def _load(stream: BinaryIO, archive: zipfile.ZipFile, file: str) -> Any:
+    if is_open_document(archive):
+        return OpenBook(archive, file)
     import openpyxl
 
     if not openpyxl.DEFUSEDXML:
@@ -387,7 +395,8 @@ def _take(
         told = as_text(_as_shown(cell, value)) if isinstance(value, date | time) else str(value)
         faults[place] = (f"holds a date ({told}), which a spreadsheet made of what was typed", _TYPE_AGAIN)
     elif is_key is not None and isinstance(value, int | float) and not isinstance(value, bool):
-        seen = shown(value, cell.number_format or "") if isfinite(value) else None
+        seen = cell.seen if isinstance(cell, OpenCell) else None
+        seen = seen or (shown(value, cell.number_format or "") if isfinite(value) else None)
         if seen is not None:
             cells[place] = TypedNumber(seen)
         elif is_key:
@@ -441,7 +450,7 @@ class Xlsx(FileSource):
     """A sheet of a workbook of Excel or LibreOffice."""
 
     name = "xlsx"
-    title = "an Excel workbook"
+    title = "a workbook"
     Settings = XlsxSettings
 
     def recognises(self, where: str, head: bytes) -> bool:  # noqa: ARG002
