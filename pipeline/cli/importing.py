@@ -65,9 +65,9 @@ def import_(
 ) -> None:
     """Read the museum's records into Kouros's inventory, by a mapping.
 
-    SOURCE is a file (CSV, TSV, XLSX, ODS, JSON, XML, among it LIDO, Adlib and MuseumPlus RIA, Linked Art), a folder of CSV
-    files that are tables of one export, a folder of JSON records, or the URL of a database; ${NAME} in a URL is taken
-    from the environment.
+    SOURCE is a file (CSV, TSV, XLSX, ODS, JSON, XML, among it LIDO, Adlib and MuseumPlus RIA, Linked Art), a folder of
+    CSV files that are tables of one export, a folder of JSON or XML records, or the URL of a database; ${NAME} in a URL
+    is taken from the environment.
 
     \b
     Example: kouros import export.csv --mapping carnegie --dry-run

@@ -418,7 +418,11 @@ def test_other_kinds_of_files_are_named() -> None:
     refused(io.BytesIO(b"number,title\n"), "not an .xlsx workbook, whatever its name says")
     refused(io.BytesIO(b""), "not an .xlsx workbook")
     refused(io.BytesIO(b"PK\x03\x04 and then nothing"), "damaged: File is not a zip file")
-    for name, match in (("xl/workbook.bin", "not an .xlsx one"), ("content.xml", "no spreadsheet"), ("a", "no workbook")):
+    for name, match in (
+        ("xl/workbook.bin", "not an .xlsx one"),
+        ("content.xml", "no spreadsheet"),
+        ("a", "no workbook"),
+    ):
         out = io.BytesIO()
         with zipfile.ZipFile(out, "w") as made:
             made.writestr(name, b"")
