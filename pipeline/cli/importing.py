@@ -209,7 +209,7 @@ def _show(found: "Proposed") -> None:
         "to choose",
         [
             f"{question.text} {question.taken!r} is taken; --choose {question.key}="
-            f"{'|'.join(option for option in question.options if option != question.taken)} takes another"
+            f"{'|'.join(option for option in question.options if option != question.taken) or 'NAME'} takes another"
             for question in found.guess.questions
         ],
     )

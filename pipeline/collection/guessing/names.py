@@ -370,6 +370,9 @@ def _forms(name: str) -> Iterator[str]:
     if len(path) > 1 and plain(path[-1]).replace(" ", "") in _HOLDING:
         yield plain(path[-2])
         yield plain(_REFERENCE.sub("", _GROUPED.sub("", path[-2])))
+    if len(path) > 1 and plain(path[-1]) == "no":
+        # The number of what: "ObjectIdentity.Number".
+        yield f"{plain(path[-2]).removesuffix(' identity')} no"
     if _GROUPED.match(path[-1]):
         yield plain(_GROUPED.sub("", path[-1]))
     # What stands in brackets may be a language.
