@@ -227,6 +227,14 @@ def _cell(element: Any) -> OpenCell:
 
 
 def _value(element: Any) -> Any:
+    try:
+        return _typed(element)
+    except ValueError:
+        # What its attributes say is no date or number: what is seen is a text.
+        return _shown(element) or None
+
+
+def _typed(element: Any) -> Any:
     kind = element.get(f"{_OFFICE}value-type", "")
     if kind in ("float", "percentage", "currency"):
         number = float(element.get(f"{_OFFICE}value", "nan"))
