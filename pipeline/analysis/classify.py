@@ -22,8 +22,8 @@ from pipeline.analysis.object_class import TakenClass, class_of
 from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
-from pipeline.analysis.told import as_told, too_slender
-from pipeline.analysis.usual import clearance_of, friction_of, own_damping, wall_damping_of
+from pipeline.analysis.told import as_displayed, as_told, display_note, too_slender
+from pipeline.analysis.usual import base_of, clearance_of, friction_of, own_damping, wall_damping_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.models.rigid_body import FALLS_IN, HALF
@@ -35,6 +35,9 @@ from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectCl
 
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
+
+SCREEN = "screen"
+"""How the reason of a class begins by whose rule a thing is a folding screen."""
 
 FIXED = "fixed-post:"
 """How the reason of a class begins by whose rule a thing stands fixed in a footing."""
@@ -71,9 +74,11 @@ class _Builder:
         values: AssumedValues,
         house: HouseEffect,
         mount: MountGuess | None,
+        *,
+        screen: bool = False,
     ) -> None:
-        self.mount = mount
-        self.sizes = Sizes.of(item, row)
+        self.mount, self.screen = mount, screen
+        self.sizes = Sizes.of(item, row, screen=screen)
         # All is found with the best of what is not recorded, and then made as uncertain as that is.
         self.item, self.row, self.support, self.values, self.house = self.sizes.filled, row, support, values, house
         self.material = material_of(item, values)
@@ -233,8 +238,9 @@ class _Builder:
         item = self.item
         friction = self._known("friction", "friction", "-")
         if friction is None:
-            material = item.base_material or self.material.friction_as
-            friction = friction_of(self.values, material, item.surface_material)
+            material = base_of(self.values, item) or self.material.friction_as
+            stands_on = furniture_of(item, self.row.name, self.support, self.house).furniture
+            friction = friction_of(self.values, material, item.surface_material, stands_on)
         self._keep("friction_static", friction)
 
     def _clearance(self) -> None:
@@ -249,8 +255,7 @@ class _Builder:
         self._spread("mass", *sizes, cause="half_width" if self.sizes.used(PLAN) else "cg_height")
 
     def _mass(self) -> None:
-        hung = self.support in (Support.HUNG, Support.SUSPENDED)
-        self._keep("mass", mass_of(self.item, self.row, self.material, hung))
+        self._keep("mass", mass_of(self.item, self.row, self.material, self.support, screen=self.screen))
 
     def _section(self, width: Estimate | None, depth: Estimate | None) -> bool:
         """Keep what the stress in the weakest section hangs on; say whether all of it is known."""
@@ -309,7 +314,7 @@ def house_effect(
     item: Item, house: HouseRules, rules: RuleTable | None = None, decided: tuple[str, str] | None = None
 ) -> HouseEffect:
     """Return what a museum's house rules come to for an object: see `classify`."""
-    return _known_of(item, rules, decided, house)[2]
+    return _known_of(as_displayed(item), rules, decided, house)[2]
 
 
 def _known_of(
@@ -350,6 +355,7 @@ def classify(
     house   : what the museum states once for many objects; None for nothing
     raises  : KeyError for a decided class that is no row of classes.csv
     """
+    item = as_displayed(item)
     taken, row, said, values = _known_of(item, rules, decided, house)
     scene = _scene(item, row, taken.words, values, said)
     hanging = said.hanging(item) or scene.hanging
@@ -364,6 +370,7 @@ def furniture_kind(
     house: HouseRules | None = None,
 ) -> Furniture:
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
+    item = as_displayed(item)
     taken, row, said, _ = _known_of(item, rules, decided, house)
     support = _held(as_told(said.laid_over(item), row), taken.words).support or row.support
     return furniture_of(item, row.name, support, said).furniture
@@ -379,7 +386,8 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     if not models:
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
-    builder = _Builder(item, row, support, values, house, mount)
+    screen = words.startswith(SCREEN) and support is Support.FREESTANDING
+    builder = _Builder(item, row, support, values, house, mount, screen=screen)
     builder.build()
     if mount is None:
         builder.missing.extend(_unheld(stands, support))
@@ -402,7 +410,7 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         if stands.support is not None:
             phrase = say.SUPPORT_FIXED(support=support.value)
         assumptions.insert(0, f"{phrase}; {say.NOT_RECORDED()}")
-    told = tuple(dict.fromkeys(assumptions))
+    told = tuple(dict.fromkeys((*display_note(item, support), *assumptions)))
     scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
 

@@ -53,7 +53,7 @@ HEAVIEST = (
 )
 """Follows the sentence of a measure that is built for a force, where its mass is assumed and may be twice the best."""
 
-OF_MEAN = "That is for the mean of the earthquakes: in one of them it moves more."
+OF_MEAN = "That is for the mean of the earthquakes: in the worst of them it moves {worst}."
 """Follows the sentence of a measure that gives room, where the mean of the motions of a level decides."""
 
 UNWEIGHED = 2.0
@@ -411,6 +411,7 @@ class _Search:
                 numbers |= {"heaviest": (mass.high, "kg"), "weight": (mass.value, "kg")}
                 more = f" {HEAVIEST}{more}"
             if measure.for_room and "clearance" in numbers and any(level.of_mean for level in self.runner.levels):
+                numbers |= {"worst": (self.runner.farthest(one.scene), "m")}
                 more = f" {OF_MEAN}{more}"
             self.helped.add(one.index)
             if measure.fastens:

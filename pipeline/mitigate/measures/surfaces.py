@@ -60,9 +60,9 @@ class Surface(_RougherSurface):
         item = one.scene.item
         material = (item.base_material or material_of(item, runner.values).friction_as).strip().lower()
         least = one.scene.parameters["friction_static"].low
-        pairs = [
-            (row.low, row.surface_material) for row in runner.values.friction if row.object_material.lower() == material
-        ]
+        # What only a handbook or judgement says of a pair is too wide a range to advise it by.
+        measured = (row for row in runner.values.friction if row.own or row.table == row.printed)
+        pairs = [(row.low, row.surface_material) for row in measured if row.object_material.lower() == material]
         rougher = sorted(pair for pair in pairs if least < pair[0] <= self.row.limit)
         harmless = [pair for pair in rougher if pair[1].lower() not in FUMING]
         if one.scene.furniture is Furniture.SHOWCASE and rougher and not harmless:

@@ -49,7 +49,7 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
         # Results of another version may lack a number: its title is true in any case.
         told.append(f"{said(clean(advice.title))}.")
     if OF_MEAN in advice.sentence:
-        told.append(_("That is for the mean of the earthquakes: in one of them it moves more."))
+        told.append(_("That is for the mean of the earthquakes: in the worst of them it moves %(worst)s.") % numbers)
     if HEAVIEST in advice.sentence:
         told.append(
             _("That is for a weight of %(heaviest)s, the most that it may have; by the best estimate it is %(weight)s.")
