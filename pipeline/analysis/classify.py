@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
+from pipeline.analysis.bodies import EDGE, SOFT, body, on_floor
 from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths
 from pipeline.analysis.furniture import furniture_of, in_furniture
@@ -32,12 +33,10 @@ from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin,
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
+from pipeline.tables.body_rows import PAIR, SCREEN, BodyRow
 
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
-
-SCREEN = "screen"
-"""How the reason of a class begins by whose rule a thing is a folding screen."""
 
 FIXED = "fixed-post:"
 """How the reason of a class begins by whose rule a thing stands fixed in a footing."""
@@ -74,11 +73,10 @@ class _Builder:
         values: AssumedValues,
         house: HouseEffect,
         mount: MountGuess | None,
-        *,
-        screen: bool = False,
+        shape: BodyRow | None = None,
     ) -> None:
-        self.mount, self.screen = mount, screen
-        self.sizes = Sizes.of(item, row, screen=screen)
+        self.mount, self.shape = mount, shape
+        self.sizes = Sizes.of(item, row, screen=shape is not None and shape.body == SCREEN)
         # All is found with the best of what is not recorded, and then made as uncertain as that is.
         self.item, self.row, self.support, self.values, self.house = self.sizes.filled, row, support, values, house
         self.material = material_of(item, values)
@@ -161,10 +159,12 @@ class _Builder:
         if item.cg_height_m is None and self._stated_as("cg_height_m") != "cg_height_m":
             self._spread("cg_height", "height")
             cg = self.found.get("cg_height")
-        halves = half_widths(item, "" if _own_base(self.row) else self.row.name, width, depth, cg)
+        whole = _own_base(self.row) or self.shape is not None
+        halves = half_widths(item, "" if whole else self.row.name, width, depth, cg)
         self.found |= halves
-        if item.susceptible is None and not self.row.rocking_harms:
-            note = say.NO_HARM_BY_ROCKING(told=self.row.told)
+        soft = self.material.name in SOFT
+        if item.susceptible is None and (soft or not self.row.rocking_harms):
+            note = say.NO_HARM_BY_ROCKING(told=self.material.told if soft else self.row.told)
             source = f"{self.row.table}, {self.row.name} ({self.row.source})"
             self._keep(FALLS_IN, Estimate.assumed(HALF, HALF, HALF, "-", note, source))
         self._friction()
@@ -208,15 +208,16 @@ class _Builder:
         if scanned is not None:
             return *scanned, []
         share = self.house.stated.get("base_ratio")
-        assumes = row.base is not None or share is not None
+        assumes = row.base is not None or row.support is Support.HUNG or share is not None
         sides: list[Estimate | None] = []
         pairs = ((item.base_width_m, item.width_m, "width"), (item.base_depth_m, item.depth_m, "depth"))
         for measured, largest, name in pairs:
             side = _measured(measured, "m")
             if side is None and largest is not None and share is not None:
                 side = share.estimate(f"base {name}", "m", largest)
-            elif side is None and largest is not None and row.base is not None:
-                side = share_of(row, row.base, largest, "m", f"base {name}", name)
+            elif side is None and largest is not None and (row.base or row.support is Support.HUNG):
+                # What usually hangs stands on its whole lower edge.
+                side = share_of(row, row.base or EDGE, largest, "m", f"base {name}", name)
             if side is not None and measured is None and self.sizes.used((name,)):
                 side = self.sizes.spread(side, (name,))
                 self.hangs_on.add(name)
@@ -255,7 +256,7 @@ class _Builder:
         self._spread("mass", *sizes, cause="half_width" if self.sizes.used(PLAN) else "cg_height")
 
     def _mass(self) -> None:
-        self._keep("mass", mass_of(self.item, self.row, self.material, self.support, screen=self.screen))
+        self._keep("mass", mass_of(self.item, self.row, self.material, self.support, self.shape))
 
     def _section(self, width: Estimate | None, depth: Estimate | None) -> bool:
         """Keep what the stress in the weakest section hangs on; say whether all of it is known."""
@@ -282,7 +283,7 @@ class _Builder:
         low, lever, high = (max(one - height, 0.0) for one in (cg.low, cg.value, cg.high))
         self._keep("lever", Estimate(lever, "m", Origin.DERIVED, low, high, note))
         self.found |= found.section.estimates(item.orientation_deg is not None)
-        solid = solid_mass(item, self.row, self.material)
+        solid = None if self.shape is not None else solid_mass(item, self.row, self.material)
         self._keep("solid_mass", solid)
         if solid is not None:
             # What bends is as stiff for its mass as the solid one.
@@ -386,8 +387,8 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     if not models:
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
-    screen = words.startswith(SCREEN) and support is Support.FREESTANDING
-    builder = _Builder(item, row, support, values, house, mount, screen=screen)
+    shape = body(stands, row, words, support, mount, material_of(item, values))
+    builder = _Builder(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:
         builder.missing.extend(_unheld(stands, support))
@@ -410,8 +411,11 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         if stands.support is not None:
             phrase = say.SUPPORT_FIXED(support=support.value)
         assumptions.insert(0, f"{phrase}; {say.NOT_RECORDED()}")
+    if shape is not None and shape.body == PAIR:
+        assumptions.insert(0, say.TWO_BODIES())
     told = tuple(dict.fromkeys((*display_note(item, support), *assumptions)))
-    scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
+    stood = on_floor(item) if shape is not None and shape.body == PAIR else item
+    scene = Scene(stood, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
 
 

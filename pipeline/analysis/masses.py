@@ -12,6 +12,7 @@ from pipeline.records import phrases as say
 from pipeline.tables import Range
 from pipeline.tables.assumed import UNKNOWN
 from pipeline.tables.assumed_rows import Material, ObjectClass
+from pipeline.tables.body_rows import SCREEN, BodyRow
 from pipeline.tables.fill_rows import fills
 
 _FRAMED = (5.0, 15.0, 40.0)
@@ -25,7 +26,7 @@ _SCREEN = (2.0, 5.0, 15.0)
 
 
 def mass_of(
-    item: Item, row: ObjectClass, material: Material, support: Support, *, screen: bool = False
+    item: Item, row: ObjectClass, material: Material, support: Support, shape: BodyRow | None = None
 ) -> Estimate | None:
     """Return the mass of an object [kg]: as recorded, else by what fills its outline, else by its area where it hangs.
 
@@ -39,8 +40,9 @@ def mass_of(
         What it is made of.
     support : Support
         How it is held.
-    screen : bool
-        Whether it is a folding screen, which is as thin as what hangs.
+    shape : BodyRow or None
+        What is known of its shape besides its class: how much of its outline it fills goes before its material, and a
+        folding screen is as thin as what hangs.
 
     Returns
     -------
@@ -49,7 +51,8 @@ def mass_of(
     """
     if item.mass_kg is not None:
         return Estimate.measured(item.mass_kg, "kg")
-    box, own = _outline(item, row), _shell_fill(row, material)
+    box, own = _outline(item, row), None if shape is not None else _shell_fill(row, material)
+    screen = shape is not None and shape.body == SCREEN
     fill = own or row.filled
     # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
     by_volume = fill is not None and item.depth_m is not None and material.name != UNKNOWN

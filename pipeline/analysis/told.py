@@ -3,7 +3,7 @@
 from dataclasses import replace
 from textwrap import shorten
 
-from pipeline.records import Furniture, Item, Support
+from pipeline.records import Furniture, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
 from pipeline.tables.held_rows import told_by
@@ -41,6 +41,19 @@ def as_displayed(item: Item) -> Item:
     )
 
 
+def held_as_displayed(item: Item, support: Support) -> bool:
+    """Say whether the words for its display alone tell that a thing is held by a brace, clips, ties or the like.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    support : Support
+        How it is taken to be held.
+    """
+    return support is Support.FASTENED and told_by(item.displayed).mount is Mount.SECURED
+
+
 def display_note(item: Item, support: Support) -> tuple[str, ...]:
     """Return what the words for its display say of how a thing is held, as the beginning of its notes; () for nothing.
 
@@ -53,7 +66,7 @@ def display_note(item: Item, support: Support) -> tuple[str, ...]:
     """
     if told_by(item.displayed).support is not support:
         return ()
-    said = say.HELD_AS_DISPLAYED if support is Support.FASTENED else say.DISPLAYED
+    said = say.HELD_AS_DISPLAYED if held_as_displayed(item, support) else say.DISPLAYED
     words = shorten(item.displayed.replace(";", ","), _QUOTED, placeholder="...")
     return (said(support=support.value, words=words),)
 

@@ -9,20 +9,22 @@ from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, span, tables_of
 from pipeline.tables.bending_rows import bending
 
-_BASE = re.compile(
-    r"\b(?:on|with|sur|su|auf|mit|con|sobre)\W+((?:\w+\W+){1,5}?)(?:base|socle|plinth|socket|Sockel|peana)\b"
-    r"|[;,]\W*((?:\w+\W+){1,3}?)(?:base|socle|plinth|Sockel|peana)\b"
-    r"|\b(?:base|socle|zoccolo|peana)\W+(?:of|en|de|in|di|aus)\W+(\w+)",
-    re.IGNORECASE,
+_BASES = tuple(
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        r"\b(?:base|socle|zoccolo|peana|Sockel)\W+(?:of|en|de|in|di|aus)\W+(\w+)",
+        r"\b(?:on|with|sur|su|auf|mit|con|sobre)\W+((?:\w+\W+){1,5}?)(?:base|socle|plinth|Sockel|peana)\b",
+        r"[;,]\W*((?:\w+\W+){1,3}?)(?:base|socle|plinth|Sockel|peana)\b",
+    )
 )
 """Words for what a thing stands on that belongs to it: "bronze on a marble base", "hide; wooden base"."""
 
 
 @lru_cache(maxsize=4096)
 def _base_in(values: AssumedValues, text: str) -> str:
-    found = _BASE.search(text)
-    told = "" if found is None else next(filter(None, found.groups()), "")
-    stuff = values.material_in(re.sub(r"\bwooden\b", "wood", told, flags=re.IGNORECASE))
+    told = (group for found in _BASES for match in found.finditer(text) for group in match.groups())
+    plain = (re.sub(r"\bwooden\b", "wood", group, flags=re.IGNORECASE) for group in told)
+    stuff = next((one for group in plain if (one := values.material_in(group)) is not None), None)
     return "" if stuff is None else stuff.friction_as
 
 

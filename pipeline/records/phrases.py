@@ -10,6 +10,10 @@ HELD_AS_DISPLAYED = Clause(
     "support: {support}, taken as made fast at its base until the brace, clips or ties that its record tells of are "
     "recorded as installed: {words}"
 )
+TWO_BODIES = Clause(
+    "its height is that of two bodies, a bust and what it stands on, which are followed as one: where the upper one "
+    "stands loose, it falls sooner"
+)
 MOUNT = Clause("mount: it {mount}, assumed for: {told}")
 NOT_RECORDED = Clause("not recorded")
 HANGING = Clause("hanging: {ways}")

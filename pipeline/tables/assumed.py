@@ -149,8 +149,9 @@ def _any_of(words: Sequence[str]) -> re.Pattern[str]:
 def _material_in(values: AssumedValues, text: str) -> Material | None:
     # What something is only glazed or plated with is not what it is made of: "tin-glazed earthenware" is no tin.
     bare = _FINISH.sub("", text)
-    found = [(match.start(), one) for pattern, one in values._words if (match := pattern.search(bare))]
-    return min(found, key=lambda pair: pair[0])[1] if found else None
+    found = [(match.start(), -len(match[0]), one) for pattern, one in values._words if (match := pattern.search(bare))]
+    # Of two that begin there the longer one: papier-mâché is no paper.
+    return min(found, key=lambda each: each[:2])[2] if found else None
 
 
 def _matching(rows: Sequence[_Pair], first: Sequence[str], second: Sequence[str]) -> list[_Pair]:

@@ -9,10 +9,9 @@ from pydantic import BeforeValidator
 
 from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support
 from pipeline.tables import table
-from pipeline.tables.rows import Entries, TableRow, Text, checked
+from pipeline.tables.rows import SOME_WORDS, Entries, TableRow, Text, checked
 
 _JOINED = re.compile("[\u2e80-\u30ff\u3400-\u9fff\uac00-\ud7af]")
-_SOME_WORDS = r"(?:\w+\W+){0,3}"
 
 
 def _nothing(cell: object) -> object:
@@ -60,7 +59,7 @@ def _rows() -> tuple[tuple[re.Pattern[str], HeldWords], ...]:
 
 def _pattern(word: str) -> str:
     # Chinese, Japanese and Korean part no words from each other.
-    inner = re.escape(word).replace(r"\*", _SOME_WORDS)
+    inner = re.escape(word).replace(r"\*", SOME_WORDS)
     return inner if _JOINED.search(word) else rf"(?<!\w){inner}(?!\w)"
 
 

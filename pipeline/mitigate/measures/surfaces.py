@@ -42,7 +42,7 @@ class _RougherSurface(Measure, ABC):
 FUMING = frozenset({"plywood"})
 """Surfaces of Table 3 that give off acids: in the air of a case these corrode lead and bronze, shell and some glasses.
 
-Tétreault 2003, Airborne Pollutants in Museums, Galleries and Archives.
+AIC Wiki, Safe and Harmful Materials for Use in Exhibits: plywood gives off formic and acetic acid.
 """
 
 

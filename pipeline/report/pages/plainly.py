@@ -6,7 +6,7 @@ The full sentence of a measure, with the moment, the margin and the friction, st
 from collections.abc import Callable, Mapping
 
 from pipeline.mitigate.by_class import NAMED_FIRST
-from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, OF_MEAN, SIZED
+from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, SIZED, UPPER_FIRST
 from pipeline.records import Recommendation
 from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
@@ -42,6 +42,10 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     write = by_hand(units)
     numbers = {name: write(name, value, advice.units.get(name, "")) for name, value in advice.parameters.items()}
     told = [_("First have what it stands in fastened.")] if advice.sentence.startswith(ANCHORED) else []
+    if HELD_FIRST in advice.sentence:
+        told.append(_("First record what holds it now as installed."))
+    if UPPER_FIRST in advice.sentence:
+        told.append(_("First fix the upper body to the one that it stands on."))
     phrase = _PHRASES[advice.measure]() if advice.measure in _PHRASES else ""
     try:
         told.append(phrase % numbers if phrase else f"{said(clean(advice.title))}.")

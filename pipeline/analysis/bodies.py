@@ -1,0 +1,58 @@
+"""What is known of the shape of a thing besides its class: a post, a folding screen, a block of one stone, a pair."""
+
+from dataclasses import replace
+
+from pipeline.analysis.mounts import MountGuess
+from pipeline.records import Furniture, Item, Support
+from pipeline.tables import Range
+from pipeline.tables.assumed_rows import Material, ObjectClass
+from pipeline.tables.body_rows import BodyRow, body_of
+
+EDGE = Range(1.0, 0.8, 1.0, "judgement: what usually hangs is as deep at its lower edge as anywhere")
+"""Share of its sides on which something stands that usually hangs [-]."""
+
+SOFT = ("inflated", "feathers")
+"""Materials of which rocking harms nothing: judgement."""
+
+
+def on_floor(item: Item) -> Item:
+    """Return a record of two bodies of which the lower one is no furniture: both stand on the floor.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    """
+    if item.furniture not in (None, Furniture.PEDESTAL):
+        return item
+    return replace(item, furniture=Furniture.FLOOR, furniture_anchorage=None)
+
+
+def body(
+    item: Item, row: ObjectClass, words: str, support: Support, mount: MountGuess | None, material: Material
+) -> BodyRow | None:
+    """Return what is known of the shape of a thing besides its class.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    row : ObjectClass
+        Its class.
+    words : str
+        Why it is of that, beginning with the rule.
+    support, mount : Support, MountGuess or None
+        How it is held.
+    material : Material
+        What it is made of.
+
+    Returns
+    -------
+    BodyRow or None
+        None for what does not stand, and for what a museum's own row says.
+    """
+    stands = support in (Support.FREESTANDING, Support.FASTENED) and (mount is None or mount.stands)
+    if row.own or not stands:
+        return None
+    text = f"{item.object_name} {item.title}"
+    return body_of(text, words.partition(":")[0], row.name, material.name, item.height_m or 0.0)
