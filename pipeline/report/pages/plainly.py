@@ -106,7 +106,7 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
     "restrain": lambda: _("Fix it to the wall at its lower corners too: the fixings must hold %(force)s together."),
     "stays": lambda: _(
         "Have it stayed from swinging by three or more lines or rods to the ceiling or the walls all round: each must "
-        "hold %(force)s."
+        "hold %(force)s. Give it a slack safety line too."
     ),
     "friction_isolator": lambda: _("Stand it on a low-friction pad, with %(clearance)s free on all sides."),
     "horizontal_isolator": lambda: _("Have it put on an isolator that moves by up to %(stroke)s."),
