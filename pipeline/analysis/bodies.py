@@ -4,26 +4,24 @@ from dataclasses import replace
 
 from pipeline.analysis.mounts import MountGuess
 from pipeline.records import Furniture, Item, Support
-from pipeline.tables import Range
 from pipeline.tables.assumed_rows import Material, ObjectClass
-from pipeline.tables.body_rows import BodyRow, body_of
-
-EDGE = Range(1.0, 0.8, 1.0, "judgement: what usually hangs is as deep at its lower edge as anywhere")
-"""Share of its sides on which something stands that usually hangs [-]."""
+from pipeline.tables.body_rows import PAIR, BodyRow, body_of
 
 SOFT = ("inflated", "feathers")
 """Materials of which rocking harms nothing: judgement."""
 
 
-def on_floor(item: Item) -> Item:
-    """Return a record of two bodies of which the lower one is no furniture: both stand on the floor.
+def on_floor(item: Item, shape: BodyRow | None) -> Item:
+    """Return a record as it is, and of two bodies with both on the floor: the lower one is no furniture.
 
     Parameters
     ----------
     item : Item
         The record.
+    shape : BodyRow or None
+        What is known of its shape.
     """
-    if item.furniture not in (None, Furniture.PEDESTAL):
+    if shape is None or shape.body != PAIR or item.furniture not in (None, Furniture.PEDESTAL):
         return item
     return replace(item, furniture=Furniture.FLOOR, furniture_anchorage=None)
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
-from pipeline.analysis.bodies import EDGE, SOFT, body, on_floor
+from pipeline.analysis.bodies import SOFT, body, on_floor
 from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths
 from pipeline.analysis.furniture import furniture_of, in_furniture
@@ -208,16 +208,15 @@ class _Builder:
         if scanned is not None:
             return *scanned, []
         share = self.house.stated.get("base_ratio")
-        assumes = row.base is not None or row.support is Support.HUNG or share is not None
+        assumes = row.base is not None or share is not None
         sides: list[Estimate | None] = []
         pairs = ((item.base_width_m, item.width_m, "width"), (item.base_depth_m, item.depth_m, "depth"))
         for measured, largest, name in pairs:
             side = _measured(measured, "m")
             if side is None and largest is not None and share is not None:
                 side = share.estimate(f"base {name}", "m", largest)
-            elif side is None and largest is not None and (row.base or row.support is Support.HUNG):
-                # What usually hangs stands on its whole lower edge.
-                side = share_of(row, row.base or EDGE, largest, "m", f"base {name}", name)
+            elif side is None and largest is not None and row.base is not None:
+                side = share_of(row, row.base, largest, "m", f"base {name}", name)
             if side is not None and measured is None and self.sizes.used((name,)):
                 side = self.sizes.spread(side, (name,))
                 self.hangs_on.add(name)
@@ -372,9 +371,11 @@ def furniture_kind(
 ) -> Furniture:
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
     item = as_displayed(item)
-    taken, row, said, _ = _known_of(item, rules, decided, house)
-    support = _held(as_told(said.laid_over(item), row), taken.words).support or row.support
-    return furniture_of(item, row.name, support, said).furniture
+    taken, row, said, values = _known_of(item, rules, decided, house)
+    stands = _held(as_told(said.laid_over(item), row), taken.words)
+    support = stands.support or row.support
+    shape = body(stands, row, taken.words, support, mount_of(stands, row, said), material_of(item, values))
+    return furniture_of(on_floor(item, shape), row.name, support, said).furniture
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
@@ -388,6 +389,7 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
     shape = body(stands, row, words, support, mount, material_of(item, values))
+    item = on_floor(item, shape)
     builder = _Builder(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:
@@ -414,8 +416,7 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     if shape is not None and shape.body == PAIR:
         assumptions.insert(0, say.TWO_BODIES())
     told = tuple(dict.fromkeys((*display_note(item, support), *assumptions)))
-    stood = on_floor(item) if shape is not None and shape.body == PAIR else item
-    scene = Scene(stood, row.name, words, support, models, known, told, missing, hanging=hanging)
+    scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
 
 

@@ -101,7 +101,7 @@ def test_a_bust_with_its_column_is_two_bodies() -> None:
 
 
 def test_a_slab_that_stands_stands_on_its_edge() -> None:
-    relief = Item("10", "G", object_name="relief", medium="marble", height_m=1.45, width_m=0.6, depth_m=0.14,
+    relief = Item("10", "G", object_name="stele", medium="marble", height_m=1.45, width_m=0.6, depth_m=0.14,
                   support=Support.FREESTANDING)  # fmt: skip
     assert classify(relief).missing == ()
     assert classify(relief).parameters["half_width"].high == pytest.approx(0.07)
