@@ -28,6 +28,8 @@ def as_displayed(item: Item) -> Item:
     item : Item
         The record.
     """
+    if not item.displayed.strip():
+        return item
     told = told_by(item.displayed)
     # Of what is recorded to hang or to stand the words for the other are about something else.
     stands = item.support is not None and item.support not in _ABOVE
