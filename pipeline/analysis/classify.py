@@ -255,7 +255,8 @@ class _Builder:
         self._spread("mass", *sizes, cause="half_width" if self.sizes.used(PLAN) else "cg_height")
 
     def _mass(self) -> None:
-        self._keep("mass", mass_of(self.item, self.row, self.material, self.support, self.shape))
+        thick = "depth" not in self.sizes.assumed
+        self._keep("mass", mass_of(self.item, self.row, self.material, self.support, self.shape, thick=thick))
 
     def _section(self, width: Estimate | None, depth: Estimate | None) -> bool:
         """Keep what the stress in the weakest section hangs on; say whether all of it is known."""

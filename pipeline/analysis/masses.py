@@ -21,12 +21,25 @@ _FRAMED = (5.0, 15.0, 40.0)
 _SUSPENDED = (0.5, 8.0, 60.0)
 """The same of what hangs from above, over its outline: from a mobile of sheet and wire to a chandelier of crystal."""
 
+_CLOTH = (0.3, 1.5, 5.0)
+"""The same of cloth on a wall whose thickness nobody recorded: from a silk banner over a tapestry to a pile carpet."""
+
 _SCREEN = (2.0, 5.0, 15.0)
 """The same of a folding screen that stands: paper or silk over a lattice of wood, to leather and lacquered boards."""
 
 
+CLOTH, FRAMED = "paper", "framed"
+"""The material of cloth and leather, and the class of what a frame holds."""
+
+
 def mass_of(
-    item: Item, row: ObjectClass, material: Material, support: Support, shape: BodyRow | None = None
+    item: Item,
+    row: ObjectClass,
+    material: Material,
+    support: Support,
+    shape: BodyRow | None = None,
+    *,
+    thick: bool = True,
 ) -> Estimate | None:
     """Return the mass of an object [kg]: as recorded, else by what fills its outline, else by its area where it hangs.
 
@@ -43,6 +56,8 @@ def mass_of(
     shape : BodyRow or None
         What is known of its shape besides its class: how much of its outline it fills goes before its material, and a
         folding screen is as thin as what hangs.
+    thick : bool
+        Whether its depth is recorded: of cloth on a wall an assumed one says nothing.
 
     Returns
     -------
@@ -56,9 +71,11 @@ def mass_of(
     fill = own or row.filled
     # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
     by_volume = fill is not None and item.depth_m is not None and material.name != UNKNOWN
-    face = {Support.HUNG: (_FRAMED, say.MASS_OF_FRAMED), Support.SUSPENDED: (_SUSPENDED, say.MASS_OF_SUSPENDED)}
+    cloth = material.name == CLOTH and row.name != FRAMED and support is Support.HUNG and not thick
+    wall = (_CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
+    face = {Support.HUNG: wall, Support.SUSPENDED: (_SUSPENDED, say.MASS_OF_SUSPENDED)}
     per_area, face_phrase = (_SCREEN, say.MASS_OF_SCREEN) if screen else face.get(support, (None, None))
-    if per_area and face_phrase and item.height_m and item.width_m and (screen or not by_volume):
+    if per_area and face_phrase and item.height_m and item.width_m and (screen or cloth or not by_volume):
         area, (low, best, high) = item.height_m * item.width_m, per_area
         note = face_phrase(mass=per_area)
         return Estimate.assumed(best * area, low * area, high * area, "kg", note, "judgement")

@@ -52,6 +52,7 @@ NOT_MEASURED = Clause("not measured")
 NO_HARM_BY_ROCKING = Clause("rocking itself is not taken to harm it, assumed for: {told}")
 
 MASS_OF_FRAMED = Clause("mass: {mass:kg/m2} of the face of a framed work, assumed")
+MASS_OF_CLOTH = Clause("mass: {mass:kg/m2} of the face of a cloth on a wall, assumed")
 MASS_OF_SUSPENDED = Clause("mass: {mass:kg/m2} of the face of what hangs from above, assumed")
 MASS_OF_SCREEN = Clause("mass: {mass:kg/m2} of the face of a folding screen, assumed")
 SCREEN_FOLDED = Clause("depth not recorded: a folding screen stands {share:-} of its height deep, assumed")

@@ -25,6 +25,12 @@ WEIGHED = (
           height_m=1.7, width_m=3.7), 8.0, 60.0),
     (Item("6", "G", object_name="obelisk", title="Obelisk", medium="granite",
           height_m=2.1, width_m=0.4, depth_m=0.4), 500.0, 900.0),
+    (Item("11", "G", object_name="tapestry", title="The Boar Hunt", medium="wool and silk", height_m=3.4, width_m=5.1),
+     10.0, 60.0),
+    (Item("12", "G", object_name="globe", title="Terrestrial globe in floor stand", medium="paper, plaster, brass, oak",
+          height_m=1.2, width_m=0.85, depth_m=0.85), 15.0, 80.0),
+    (Item("13", "G", object_name="harp", title="Double-action pedal harp", medium="maple, brass", height_m=1.78,
+          width_m=0.95, depth_m=0.55), 20.0, 60.0),
 )  # fmt: skip
 
 
