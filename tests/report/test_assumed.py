@@ -43,7 +43,7 @@ FURNITURE = (
         (MASS, "in", "mass: bronze of 543\u202flb/ft³ filling 0.5 of its outline, assumed"),
         (FRAMED, "ft", "mass: 3.07\u202flb/ft² (1.02 to 8.19) of the face of a framed work, assumed"),
         (SOLID, "in", "section: taken as solid from 26.5\u202flb on and as hollow below, its area with its mass: it is "
-         "of metal"),
+         "hollow or of sheet"),
         (SHEET, "in", "the museum's record says 7\u00a0⅞\u00a0in, the sheet desk, A. Smith says 19\u00a0⅝\u00a0in, "
          "which is used"),
         (CASE, "in", CASE),
