@@ -1,6 +1,8 @@
 """What the tables and their columns are about, for the reference pages: a table without words fails the build."""
 
 TABLE_WORDS = {
+    "bodies": "What is assumed of a thing more particularly than its class does: blocks of one stone, posts, folding "
+    "screens, busts with their columns, figures on stands.",
     "bending": "What holds of whatever bends: how firmly it is held, its damping, stress concentration at a held base.",
     "classes": "What a class of objects assumes where the museum's record is silent.",
     "contacts": "How much of a base that is only assumed may really bear.",
@@ -21,6 +23,8 @@ TABLE_WORDS = {
     "found_words": "Words by which people say what they found after an earthquake, and names of columns of such "
     "lists, in the languages of the pages.",
     "generic_models": "The paper's Tables 1 and 2, and the model that answers each row.",
+    "held_words": "What museums' words for how a thing is displayed tell of its support, hanging, furniture and mount; "
+    "* is up to three words.",
     "hangings": "Ways to hang on a wall: whether a work swings or may be lifted off, its hooks and its hangers.",
     "furniture": "What objects stand on or in, or hang from: frequency [Hz], damping [-], degrees off level, and size.",
     "usual_furniture": "What objects of a class usually stand on or hang from, by height [m]; * is any other class.",
@@ -40,6 +44,8 @@ TABLE_WORDS = {
     "slender": "How much of an object of a class is about as slender as its critical section, by share of its height.",
     "stakes": "What is at stake: weights of the classes of value and of a person, and the energy that is dangerous.",
     "minutes": "How long a measurement takes at the object, in minutes.",
+    "surfaces": "What objects stand on: by which words records tell it, alone or beside what is stood on, and on which "
+    "furniture it is met by chance.",
     "survey": "The questions of the survey's sheet.",
     "validation": "What `kouros validate` assumes of a body for which nothing is fitted.",
 }

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
+from pipeline.analysis.bodies import SOFT, body, on_floor
 from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths
 from pipeline.analysis.furniture import furniture_of, in_furniture
@@ -22,8 +23,8 @@ from pipeline.analysis.object_class import TakenClass, class_of
 from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
-from pipeline.analysis.told import as_told, too_slender
-from pipeline.analysis.usual import clearance_of, friction_of, own_damping, wall_damping_of
+from pipeline.analysis.told import as_displayed, as_told, display_note, too_slender
+from pipeline.analysis.usual import base_of, clearance_of, friction_of, own_damping, wall_damping_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.models.rigid_body import FALLS_IN, HALF
@@ -32,6 +33,7 @@ from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin,
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
+from pipeline.tables.body_rows import PAIR, SCREEN, BodyRow
 
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
@@ -71,9 +73,10 @@ class _Builder:
         values: AssumedValues,
         house: HouseEffect,
         mount: MountGuess | None,
+        shape: BodyRow | None = None,
     ) -> None:
-        self.mount = mount
-        self.sizes = Sizes.of(item, row)
+        self.mount, self.shape = mount, shape
+        self.sizes = Sizes.of(item, row, screen=shape is not None and shape.body == SCREEN)
         # All is found with the best of what is not recorded, and then made as uncertain as that is.
         self.item, self.row, self.support, self.values, self.house = self.sizes.filled, row, support, values, house
         self.material = material_of(item, values)
@@ -156,10 +159,12 @@ class _Builder:
         if item.cg_height_m is None and self._stated_as("cg_height_m") != "cg_height_m":
             self._spread("cg_height", "height")
             cg = self.found.get("cg_height")
-        halves = half_widths(item, "" if _own_base(self.row) else self.row.name, width, depth, cg)
+        whole = _own_base(self.row) or self.shape is not None
+        halves = half_widths(item, "" if whole else self.row.name, width, depth, cg)
         self.found |= halves
-        if item.susceptible is None and not self.row.rocking_harms:
-            note = say.NO_HARM_BY_ROCKING(told=self.row.told)
+        soft = self.material.name in SOFT
+        if item.susceptible is None and (soft or not self.row.rocking_harms):
+            note = say.NO_HARM_BY_ROCKING(told=self.material.told if soft else self.row.told)
             source = f"{self.row.table}, {self.row.name} ({self.row.source})"
             self._keep(FALLS_IN, Estimate.assumed(HALF, HALF, HALF, "-", note, source))
         self._friction()
@@ -233,8 +238,9 @@ class _Builder:
         item = self.item
         friction = self._known("friction", "friction", "-")
         if friction is None:
-            material = item.base_material or self.material.friction_as
-            friction = friction_of(self.values, material, item.surface_material)
+            material = base_of(self.values, item) or self.material.friction_as
+            stands_on = furniture_of(item, self.row.name, self.support, self.house).furniture
+            friction = friction_of(self.values, material, item.surface_material, stands_on)
         self._keep("friction_static", friction)
 
     def _clearance(self) -> None:
@@ -249,8 +255,8 @@ class _Builder:
         self._spread("mass", *sizes, cause="half_width" if self.sizes.used(PLAN) else "cg_height")
 
     def _mass(self) -> None:
-        hung = self.support in (Support.HUNG, Support.SUSPENDED)
-        self._keep("mass", mass_of(self.item, self.row, self.material, hung))
+        thick = "depth" not in self.sizes.assumed
+        self._keep("mass", mass_of(self.item, self.row, self.material, self.support, self.shape, thick=thick))
 
     def _section(self, width: Estimate | None, depth: Estimate | None) -> bool:
         """Keep what the stress in the weakest section hangs on; say whether all of it is known."""
@@ -277,7 +283,7 @@ class _Builder:
         low, lever, high = (max(one - height, 0.0) for one in (cg.low, cg.value, cg.high))
         self._keep("lever", Estimate(lever, "m", Origin.DERIVED, low, high, note))
         self.found |= found.section.estimates(item.orientation_deg is not None)
-        solid = solid_mass(item, self.row, self.material)
+        solid = None if self.shape is not None else solid_mass(item, self.row, self.material)
         self._keep("solid_mass", solid)
         if solid is not None:
             # What bends is as stiff for its mass as the solid one.
@@ -309,7 +315,7 @@ def house_effect(
     item: Item, house: HouseRules, rules: RuleTable | None = None, decided: tuple[str, str] | None = None
 ) -> HouseEffect:
     """Return what a museum's house rules come to for an object: see `classify`."""
-    return _known_of(item, rules, decided, house)[2]
+    return _known_of(as_displayed(item), rules, decided, house)[2]
 
 
 def _known_of(
@@ -350,6 +356,7 @@ def classify(
     house   : what the museum states once for many objects; None for nothing
     raises  : KeyError for a decided class that is no row of classes.csv
     """
+    item = as_displayed(item)
     taken, row, said, values = _known_of(item, rules, decided, house)
     scene = _scene(item, row, taken.words, values, said)
     hanging = said.hanging(item) or scene.hanging
@@ -364,9 +371,12 @@ def furniture_kind(
     house: HouseRules | None = None,
 ) -> Furniture:
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
-    taken, row, said, _ = _known_of(item, rules, decided, house)
-    support = _held(as_told(said.laid_over(item), row), taken.words).support or row.support
-    return furniture_of(item, row.name, support, said).furniture
+    item = as_displayed(item)
+    taken, row, said, values = _known_of(item, rules, decided, house)
+    stands = _held(as_told(said.laid_over(item), row), taken.words)
+    support = stands.support or row.support
+    shape = body(stands, row, taken.words, support, mount_of(stands, row, said), material_of(item, values))
+    return furniture_of(on_floor(item, shape), row.name, support, said).furniture
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
@@ -379,7 +389,9 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     if not models:
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
-    builder = _Builder(item, row, support, values, house, mount)
+    shape = body(stands, row, words, support, mount, material_of(item, values))
+    item = on_floor(item, shape)
+    builder = _Builder(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:
         builder.missing.extend(_unheld(stands, support))
@@ -402,7 +414,9 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         if stands.support is not None:
             phrase = say.SUPPORT_FIXED(support=support.value)
         assumptions.insert(0, f"{phrase}; {say.NOT_RECORDED()}")
-    told = tuple(dict.fromkeys(assumptions))
+    if shape is not None and shape.body == PAIR:
+        assumptions.insert(0, say.TWO_BODIES())
+    told = tuple(dict.fromkeys((*display_note(item, support), *assumptions)))
     scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
 

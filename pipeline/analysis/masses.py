@@ -1,23 +1,46 @@
 """Mass of an object that nobody weighed: how much of its outline its material fills.
 
-What is made of metal is sheet, cast hollow, or of rods, and fills far less than the same thing of wood or clay.  What
-makes it lighter makes its critical section thinner too, so that one must not be counted without the other.
+What is made of metal is sheet, cast hollow, or of rods, and what is made of papier-mâché or fibreglass is a shell: it
+fills far less than the same thing of wood or clay.  What makes it lighter makes its critical section thinner too, so
+that one must not be counted without the other.
 """
 
 from math import pi
 
-from pipeline.records import Estimate, Item, Origin
+from pipeline.records import Estimate, Item, Origin, Support
 from pipeline.records import phrases as say
 from pipeline.tables import Range
 from pipeline.tables.assumed import UNKNOWN
 from pipeline.tables.assumed_rows import Material, ObjectClass
+from pipeline.tables.body_rows import SCREEN, BodyRow
 from pipeline.tables.fill_rows import fills
 
 _FRAMED = (5.0, 15.0, 40.0)
 """Mass of a square metre of a framed work [kg/m2], by judgement: low, best, high."""
 
+_SUSPENDED = (0.5, 8.0, 60.0)
+"""The same of what hangs from above, over its outline: from a mobile of sheet and wire to a chandelier of crystal."""
 
-def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Estimate | None:
+_CLOTH = (0.3, 1.5, 5.0)
+"""The same of cloth on a wall whose thickness nobody recorded: from a silk banner over a tapestry to a pile carpet."""
+
+_SCREEN = (2.0, 5.0, 15.0)
+"""The same of a folding screen that stands: paper or silk over a lattice of wood, to leather and lacquered boards."""
+
+
+CLOTH, FRAMED = "paper", "framed"
+"""The material of cloth and leather, and the class of what a frame holds."""
+
+
+def mass_of(
+    item: Item,
+    row: ObjectClass,
+    material: Material,
+    support: Support,
+    shape: BodyRow | None = None,
+    *,
+    thick: bool = True,
+) -> Estimate | None:
     """Return the mass of an object [kg]: as recorded, else by what fills its outline, else by its area where it hangs.
 
     Parameters
@@ -28,8 +51,13 @@ def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Est
         Its class.
     material : Material
         What it is made of.
-    hung : bool
-        Whether it hangs.
+    support : Support
+        How it is held.
+    shape : BodyRow or None
+        What is known of its shape besides its class: how much of its outline it fills goes before its material, and a
+        folding screen is as thin as what hangs.
+    thick : bool
+        Whether its depth is recorded: of cloth on a wall an assumed one says nothing.
 
     Returns
     -------
@@ -38,25 +66,30 @@ def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Est
     """
     if item.mass_kg is not None:
         return Estimate.measured(item.mass_kg, "kg")
-    box, own = _outline(item, row), _metal_fill(row, material)
+    box, own = _outline(item, row), None if shape is not None else _shell_fill(row, material)
+    screen = shape is not None and shape.body == SCREEN
     fill = own or row.filled
     # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
     by_volume = fill is not None and item.depth_m is not None and material.name != UNKNOWN
-    if hung and item.height_m and item.width_m and not by_volume:
-        area, (low, best, high) = item.height_m * item.width_m, _FRAMED
-        note = say.MASS_OF_FRAMED(mass=_FRAMED)
+    cloth = material.name == CLOTH and row.name != FRAMED and support is Support.HUNG and not thick
+    wall = (_CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
+    face = {Support.HUNG: wall, Support.SUSPENDED: (_SUSPENDED, say.MASS_OF_SUSPENDED)}
+    per_area, face_phrase = (_SCREEN, say.MASS_OF_SCREEN) if screen else face.get(support, (None, None))
+    if per_area and face_phrase and item.height_m and item.width_m and (screen or cloth or not by_volume):
+        area, (low, best, high) = item.height_m * item.width_m, per_area
+        note = face_phrase(mass=per_area)
         return Estimate.assumed(best * area, low * area, high * area, "kg", note, "judgement")
     if fill is None or box is None:
         return None
     density = material.density_range
-    phrase = say.MASS_OF_METAL if own else say.MASS_OF_CLASS if row.aside else say.MASS
+    phrase = say.MASS_OF_SHELL if own else say.MASS_OF_CLASS if row.aside else say.MASS
     note = phrase(material=material.told, density=density.value, fill=fill.value, aside=row.aside.strip(" ()"))
     low, high = box * fill.low * density.low, box * fill.high * density.high
     return Estimate.assumed(box * fill.value * density.value, low, high, "kg", note, density.source)
 
 
 def solid_mass(item: Item, row: ObjectClass, material: Material) -> Estimate | None:
-    """Return the mass below which a thing of metal is hollow, and its critical section with it [kg].
+    """Return the mass below which a thing of sheet or a shell is hollow, and its critical section with it [kg].
 
     Parameters
     ----------
@@ -69,7 +102,7 @@ def solid_mass(item: Item, row: ObjectClass, material: Material) -> Estimate | N
         None where its section is recorded, or nothing says that it may be hollow.
     """
     box, filled = _outline(item, row), row.filled
-    if item.section_width_m is not None or box is None or filled is None or _metal_fill(row, material) is None:
+    if item.section_width_m is not None or box is None or filled is None or _shell_fill(row, material) is None:
         return None
     mass = box * filled.value * material.density_range.value
     return Estimate(mass, "kg", Origin.ASSUMED, mass, mass, say.SOLID(mass=mass), "judgement")
@@ -83,6 +116,6 @@ def _outline(item: Item, row: ObjectClass) -> float | None:
     return item.height_m * across * along * (0.25 * pi if row.round else 1.0)
 
 
-def _metal_fill(row: ObjectClass, material: Material) -> Range | None:
+def _shell_fill(row: ObjectClass, material: Material) -> Range | None:
     """Return how much of its outline fills.csv says that it fills; a museum's own row of the class goes before."""
     return None if row.own else fills().get((row.name, material.name))

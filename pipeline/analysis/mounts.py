@@ -15,10 +15,14 @@ from pipeline.analysis.sizes import SIZES, Sizes, sizes_known
 from pipeline.records import Estimate, Item, Mount, Origin
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
+from pipeline.tables.held_rows import told_by
 from pipeline.tables.mount_rows import MountRow, mount_rows
 
 BULKY, LAID = 0.35, 0.2
 """Smallest over largest size, and largest size [m], from which on a thing stands rather than lies: judgement."""
+
+TALL, DEEP = 1.2, 0.3
+"""Height and least size [m] from which on what is held by mounts stands on a base of its own: judgement."""
 
 _UPRIGHT = (Mount.STANDING, Mount.LEANING)
 
@@ -75,9 +79,11 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect) -> MountGuess | N
         None for what stands or hangs by its class, for what hangs by its record, and for what is fastened by a section
         that was measured.
     """
+    rows, told, words = mount_rows(), house.stated.get("mount"), told_by(item.displayed).mount
+    if words is not None and item.support in (None, row.support):
+        return MountGuess(rows[words], Origin.MEASURED)
     if WHEN_HELD not in row.models:
         return None
-    rows, told = mount_rows(), house.stated.get("mount")
     if told is not None:
         return MountGuess(rows[Mount(str(told.value))], Origin.STATED)
     if item.support is not None:
@@ -86,7 +92,7 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect) -> MountGuess | N
             return None
         return MountGuess(rows[way], Origin.STATED if "held" in house.stated else Origin.MEASURED)
     usual = next((one for one in rows.values() if one.kind == row.name), rows[Mount.UNKNOWN])
-    if usual.mount is Mount.LYING and _bulky(item):
+    if (usual.mount is Mount.LYING and _bulky(item)) or (usual.kind == "mounted" and _upright_by_itself(item)):
         usual = rows[Mount.STANDING]
     note = f"{say.MOUNT(mount=usual.title, told=row.told)}; {say.NOT_RECORDED()}"
     return MountGuess(usual, Origin.ASSUMED, note)
@@ -96,6 +102,20 @@ def _bulky(item: Item) -> bool:
     """Say whether a thing is too thick and too large to be laid down in a case."""
     sizes = sizes_known(item).values()
     return len(sizes) == len(SIZES) and min(sizes) >= BULKY * max(sizes) and max(sizes) >= LAID
+
+
+def _upright_by_itself(item: Item) -> bool:
+    """Say whether what is held by mounts is as tall and as deep as a figure: it has a stand with a base of its own.
+
+    A suit of armour, a costume or a harp is no thing that a mount in a case could hold.
+    """
+    sizes = sizes_known(item)
+    return (
+        len(sizes) == len(SIZES)
+        and sizes["height"] == max(sizes.values())
+        and sizes["height"] >= TALL
+        and min(sizes.values()) >= DEEP
+    )
 
 
 def mount_estimates(guess: MountGuess, row: ObjectClass, sizes: Sizes) -> Mapping[str, Estimate]:

@@ -1,14 +1,76 @@
-"""How a thing is held by what its record says besides: its footing, its furniture, its isolator."""
+"""How a thing is held by what its record says besides: how it is displayed, its footing, furniture and isolator."""
 
 from dataclasses import replace
+from textwrap import shorten
 
-from pipeline.records import Furniture, Item, Support
+from pipeline.records import Furniture, Item, Mount, Support
+from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
+from pipeline.tables.held_rows import told_by
+from pipeline.tables.surface_rows import surfaces_in
 
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
 
+_QUOTED = 80
+"""Characters of the museum's words that a note repeats."""
+
+_ABOVE = (Support.HUNG, Support.SUSPENDED)
+
 _TO_STAND_ON = (Furniture.FLOOR, Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
+
+
+def as_displayed(item: Item) -> Item:
+    """Return a record with what its words for how it is displayed tell, where it does not name that.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    """
+    if not item.displayed.strip():
+        return item
+    told = told_by(item.displayed)
+    # Of what is recorded to hang or to stand the words for the other are about something else.
+    stands = item.support is not None and item.support not in _ABOVE
+    return replace(
+        item,
+        support=item.support or (None if item.hanging is not None else told.support),
+        hanging=item.hanging or (None if stands else told.hanging),
+        furniture=item.furniture or told.furniture,
+        furniture_anchorage=item.furniture_anchorage or told.anchorage,
+        surface_material=item.surface_material or " and ".join(surfaces_in(item.displayed)),
+    )
+
+
+def held_as_displayed(item: Item, support: Support) -> bool:
+    """Say whether the words for its display alone tell that a thing is held by a brace, clips, ties or the like.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    support : Support
+        How it is taken to be held.
+    """
+    return support is Support.FASTENED and told_by(item.displayed).mount is Mount.SECURED
+
+
+def display_note(item: Item, support: Support) -> tuple[str, ...]:
+    """Return what the words for its display say of how a thing is held, as the beginning of its notes; () for nothing.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    support : Support
+        How it is taken to be held.
+    """
+    if told_by(item.displayed).support is not support:
+        return ()
+    said = say.HELD_AS_DISPLAYED if held_as_displayed(item, support) else say.DISPLAYED
+    words = shorten(item.displayed.replace(";", ","), _QUOTED, placeholder="...")
+    return (said(support=support.value, words=words),)
 
 
 def as_told(item: Item, row: ObjectClass) -> Item:

@@ -1,11 +1,52 @@
 """Numbers that tables alone say, by a few words of a record: clearance, friction, damping."""
 
+import re
+from collections.abc import Mapping
 from functools import cache, lru_cache
 
-from pipeline.records import Estimate
+from pipeline.records import Estimate, Furniture, Item
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, span, tables_of
 from pipeline.tables.bending_rows import bending
+
+_BASES = tuple(
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        r"\b(?:base|socle|zoccolo|peana|Sockel)\W+(?:of|en|de|in|di|aus)\W+(\w+)",
+        r"\b(?:on|with|sur|su|auf|mit|con|sobre)\W+((?:\w+\W+){1,5}?)(?:base|socle|plinth|Sockel|peana)\b",
+        r"[;,]\W*((?:\w+\W+){1,3}?)(?:base|socle|plinth|Sockel|peana)\b",
+    )
+)
+"""Words for what a thing stands on that belongs to it: "bronze on a marble base", "hide; wooden base"."""
+
+
+@lru_cache(maxsize=4096)
+def _base_in(values: AssumedValues, text: str) -> str:
+    told = (group for found in _BASES for match in found.finditer(text) for group in match.groups())
+    plain = (re.sub(r"\bwooden\b", "wood", group, flags=re.IGNORECASE) for group in told)
+    stuff = next((one for group in plain if (one := values.material_in(group)) is not None), None)
+    return "" if stuff is None else stuff.friction_as
+
+
+def base_of(values: AssumedValues, item: Item) -> str:
+    """Return as what a thing slides by the words for its base; "" where there are none.
+
+    values : the tables that know the words
+    """
+    told = item.base_material.strip()
+    known = {row.pair[0] for row in values.friction}
+    if told and told.lower() not in known:
+        stuff = values.material_in(told)
+        return told if stuff is None else stuff.friction_as or told
+    return told or _base_in(values, item.medium)
+
+
+ON_ANY: Mapping[Furniture | None, str] = {
+    Furniture.SHOWCASE: "anything in a showcase",
+    Furniture.SHELF: "any shelf",
+    Furniture.PEDESTAL: "any pedestal",
+}
+"""What is said of a surface that nobody tells, by what it is on; of others "any floor"."""
 
 # What depends on a table and a few words only is worked out once, not for every object of a collection.
 
@@ -21,11 +62,14 @@ def clearance_of(values: AssumedValues, object_class: str) -> Estimate | None:
 
 
 @lru_cache(maxsize=4096)
-def friction_of(values: AssumedValues, material: str, surface: str) -> Estimate:
-    """Return the friction of a material on a surface [-]; "" for either where nobody says it."""
-    rows = values.friction_of(material, surface)
+def friction_of(values: AssumedValues, material: str, surface: str, furniture: Furniture | None = None) -> Estimate:
+    """Return the friction of a material on a surface [-]; "" for either where nobody says it.
+
+    furniture : on which the surface is, of one that nobody says
+    """
+    rows = values.friction_of(material, surface, furniture)
     found = span(rows)
-    of, on = material or "any material", surface or "any floor"
+    of, on = material or "any material", surface or ON_ANY.get(furniture, "any floor")
     note = f"{say.FRICTION(friction=found, tables=tables_of(rows), material=of, surface=on)}; {say.NOT_MEASURED()}"
     return Estimate.assumed(found.value, found.low, found.high, "-", note, found.source)
 

@@ -21,7 +21,15 @@ from pipeline.collection.guessing.columns import (
     usual_place,
 )
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
-from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among, images_among, pictures_said
+from pipeline.collection.guessing.fields import (
+    Fields,
+    Question,
+    decimal_of,
+    flag_among,
+    images_among,
+    pictures_said,
+    tells_display,
+)
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named, unit_in
 from pipeline.collection.guessing.source import (
     GuessNotes,
@@ -154,6 +162,17 @@ def _check_choices(choices: Mapping[str, str]) -> None:
             )
 
 
+def _words_of_display(found: dict[str, Column], told: GuessNotes) -> None:
+    """Take a column for how objects are displayed only where it holds words; one of mounts, too, that holds such."""
+    column = found.get("displayed")
+    if column is not None and "displayed" not in told.choices and not tells_display(column):
+        del found["displayed"]
+    mounts = found.get("support")
+    if "displayed" not in found and mounts is not None and "support" not in told.choices and tells_display(mounts):
+        found["displayed"] = found.pop("support")
+        told.doubts.append(f"column {mounts.name!r} is taken to say in words how objects are displayed or held")
+
+
 def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told: GuessNotes) -> Guess:
     able = candidates(columns)
     _add_misspelt(columns, able, told)
@@ -175,6 +194,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     document["museum"] = {"name": "Our museum"}
     if not {"gallery", "on_display"} & told.choices.keys() and "gallery" not in found:
         _place_of_shown(found, told)
+    _words_of_display(found, told)
     if "on_display" not in found and "on_display" not in told.choices:
         flag = flag_among(columns, found.values())
         if flag is not None:

@@ -61,6 +61,7 @@ _MEANINGS = {
     "aat": "Getty AAT identifiers of its kind, material and technique, separated by spaces.",
     "dimensions": "Dimensions and weight in the museum's words, where they were read from a text.",
     "case": "Display case or plinth it stands in or on.",
+    "displayed": "How it is displayed, in the museum's words, such as hung from the ceiling.",
     "position_x_m": "Position in the gallery, towards x (east).",
     "position_y_m": "Position in the gallery, towards y (north).",
     "orientation_deg": "Direction of the object's width, clockwise from north.",

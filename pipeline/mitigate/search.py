@@ -9,6 +9,7 @@ from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.figures import chart_key
 from pipeline.analysis.furniture import FurnitureFilter, fastened, filter_of, loose
+from pipeline.analysis.told import held_as_displayed
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.deficiencies import deficiencies, levels_asked, may_fall, of_unassessed
@@ -32,6 +33,7 @@ from pipeline.mitigate.proposals import (
 from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
 from pipeline.models.common import N_
 from pipeline.records import Estimate, Finding, Likelihood, Mark, Numerics, Origin, Recommendation, Scene, Verdict
+from pipeline.records import phrases as say
 from pipeline.records.numerics import VERDICTS
 from pipeline.tables.mount_rows import mount_rows
 
@@ -53,8 +55,16 @@ HEAVIEST = (
 )
 """Follows the sentence of a measure that is built for a force, where its mass is assumed and may be twice the best."""
 
-OF_MEAN = "That is for the mean of the earthquakes: in one of them it moves more."
+OF_MEAN = "That is for the mean of the earthquakes: in the worst of them it moves {worst}."
 """Follows the sentence of a measure that gives room, where the mean of the motions of a level decides."""
+
+UPPER_FIRST = "First fix the upper body to the one that it stands on: loose, it falls sooner than both together."
+"""Comes before the sentence of a measure for two bodies that are followed as one."""
+
+HELD_FIRST = (
+    "First record the brace, clips or ties that its record tells of as installed: until then they do not count."
+)
+"""Comes before the sentence of a measure for what is held by more than its base, as the words for its display say."""
 
 UNWEIGHED = 2.0
 """Largest over best estimate of an assumed mass from which on whoever builds for a force is told so."""
@@ -411,7 +421,13 @@ class _Search:
                 numbers |= {"heaviest": (mass.high, "kg"), "weight": (mass.value, "kg")}
                 more = f" {HEAVIEST}{more}"
             if measure.for_room and "clearance" in numbers and any(level.of_mean for level in self.runner.levels):
-                more = f" {OF_MEAN}{more}"
+                worst = self.runner.farthest(one.scene)
+                if worst > numbers.get("movement", (0.0, "m"))[0]:
+                    numbers |= {"worst": (worst, "m")}
+                    more = f" {OF_MEAN}{more}"
+            first = f"{UPPER_FIRST} " if say.TWO_BODIES() in one.scene.assumptions else ""
+            if held_as_displayed(one.scene.item, one.scene.support):
+                first = f"{HELD_FIRST} {first}"
             self.helped.add(one.index)
             if measure.fastens:
                 self.fastened.add(one.index)
@@ -424,7 +440,7 @@ class _Search:
                     level=level,
                     measure=name,
                     title=title,
-                    sentence=_filled(sentence, words).rstrip() + more,
+                    sentence=first + _filled(sentence, words).rstrip() + more,
                     parameters={key: value for key, (value, _) in numbers.items()},
                     units={key: unit_ for key, (_, unit_) in numbers.items()},
                     checks=(

@@ -17,6 +17,7 @@ from pipeline.analysis.response import answer
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.isolation import IsolatorResponse, TransmittedMotions, push_of, run_isolator
 from pipeline.mitigate.rows import Isolator
+from pipeline.models import settled_by_room
 from pipeline.records import Finding, Likelihood, Motion, Numerics, Progress, Sampling, Scene
 from pipeline.records.numerics import CHART
 from pipeline.tables.assumed import AssumedValues, assumed
@@ -185,6 +186,20 @@ class TrialRunner:
             self._made[key] = make()
         made: _T = self._made[key]
         return made
+
+    def farthest(self, scene: Scene) -> float:
+        """Return how far an object moves in the motion that moves it farthest, by the best estimates [m].
+
+        Parameters
+        ----------
+        scene : Scene
+            As it stands.
+        """
+        moving = tuple(name for name in scene.models if settled_by_room(name))
+        alone = [replace(level, combine="max", others=()) for level in self.levels]
+        one = replace(settled(scene), models=moving)
+        _, (found,) = assess([one], alone, self._context.silent, self._numerics.integrated)
+        return max((finding.demand or 0.0 for finding in found), default=0.0)
 
     def run(self, trials: Sequence[Trial]) -> list[list[Finding]]:
         """Run every model of each trial's scene, equal work once.

@@ -5,6 +5,15 @@ from pipeline.records.phrase import Clause
 SUPPORT = Clause("support: {support}, assumed for: {told}")
 SUPPORT_FIXED = Clause("support: {support}, assumed for a post that stands in a footing")
 SUPPORT_TOLD = Clause("support: {support}, as its record says on what it stands")
+DISPLAYED = Clause("support: {support}, as its record says of its display: {words}")
+HELD_AS_DISPLAYED = Clause(
+    "support: {support}, taken as made fast at its base until the brace, clips or ties that its record tells of are "
+    "recorded as installed: {words}"
+)
+TWO_BODIES = Clause(
+    "its height is that of two bodies, a bust and what it stands on, which are followed as one: where the upper one "
+    "stands loose, it falls sooner"
+)
 MOUNT = Clause("mount: it {mount}, assumed for: {told}")
 NOT_RECORDED = Clause("not recorded")
 HANGING = Clause("hanging: {ways}")
@@ -26,7 +35,7 @@ FACE_TURNED = Clause("hung by the long side it is {other:m}")
 SECTION_RECORDED = Clause("section: {shape}, as recorded")
 SECTION_UNKNOWN = Clause("section: the recorded shape {shape} is not known, and not used")
 SOLID = Clause(
-    "section: taken as solid from {mass:kg~2} on and as hollow below, its area with its mass: it is of metal"
+    "section: taken as solid from {mass:kg~2} on and as hollow below, its area with its mass: it is hollow or of sheet"
 )
 POLYGON = Clause("contact polygon, as recorded")
 POLYGON_LEAST = Clause("contact polygon, as recorded: {value:m~4}, or {least:m~4} by the least that it may be")
@@ -43,10 +52,14 @@ NOT_MEASURED = Clause("not measured")
 NO_HARM_BY_ROCKING = Clause("rocking itself is not taken to harm it, assumed for: {told}")
 
 MASS_OF_FRAMED = Clause("mass: {mass:kg/m2} of the face of a framed work, assumed")
+MASS_OF_CLOTH = Clause("mass: {mass:kg/m2} of the face of a cloth on a wall, assumed")
+MASS_OF_SUSPENDED = Clause("mass: {mass:kg/m2} of the face of what hangs from above, assumed")
+MASS_OF_SCREEN = Clause("mass: {mass:kg/m2} of the face of a folding screen, assumed")
+SCREEN_FOLDED = Clause("depth not recorded: a folding screen stands {share:-} of its height deep, assumed")
 MASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed")
 MASS_OF_CLASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline ({aside}), assumed")
-MASS_OF_METAL = Clause(
-    "mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed for what is made of metal"
+MASS_OF_SHELL = Clause(
+    "mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed for what is hollow or of sheet"
 )
 STRESS = Clause("allowable stress: {material}, {stress:MPa}, condition factor {factor:-}")
 STRESS_UNSEEN = Clause("allowable stress: {material}, {stress:MPa}, condition factor 1 (not recorded)")

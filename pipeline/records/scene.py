@@ -125,6 +125,8 @@ class Item:
         The museum's own text where they were read from one.
     case : str
         The display case or plinth that it stands in or on.
+    displayed : str
+        How it is displayed, in the museum's words.
     position_x_m, position_y_m, orientation_deg : float or None
         In the gallery, m towards east and north, and the direction of its width, degrees clockwise from north.
     support, isolator : Support or None, str
@@ -179,6 +181,7 @@ class Item:
     aat: str = ""
     dimensions: str = ""
     case: str = ""
+    displayed: str = ""
     position_x_m: float | None = None
     position_y_m: float | None = None
     orientation_deg: float | None = None

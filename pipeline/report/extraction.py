@@ -10,6 +10,7 @@ from pipeline.analysis.classify import object_classes
 from pipeline.analysis.furniture import DAMPING, FREQUENCY, LEVEL_ERROR, WHAT_HANGS
 from pipeline.analysis.section import OF_CLASS
 from pipeline.analysis.sizes import SIZES
+from pipeline.analysis.usual import ON_ANY
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.fixing_rows import fixing_strengths
@@ -18,7 +19,7 @@ from pipeline.mitigate.measures import MEASURES
 from pipeline.mitigate.measures.horizontal_isolator import GENERIC
 from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
-from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, OF_MEAN, ONLY_HERE, SIZED
+from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, ONLY_HERE, SIZED, UPPER_FIRST
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import UNTOLD_ISOLATOR, Anchorage, Item, Support
@@ -83,7 +84,7 @@ def _of_measures() -> Iterator[str]:
             yield sentence.replace("{what}", IT).replace("{product}", GENERIC).replace(" {how}", "")
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
-    yield from (ONLY_HERE, AT_BEST, SIZED, HEAVIEST, OF_MEAN, ANCHORED, NAMED_FIRST)
+    yield from (ONLY_HERE, AT_BEST, SIZED, HEAVIEST, OF_MEAN, ANCHORED, NAMED_FIRST, UPPER_FIRST, HELD_FIRST)
     yield from (row.care for row in fixing_strengths().values())
 
 
@@ -91,11 +92,12 @@ def _of_assumptions() -> Iterator[str]:
     """Yield the phrases of what is assumed, and what may stand in their places."""
     yield from (phrase.asked for phrase in (*PHRASES, *SENTENCES))
     yield from (*TABLES, *SOURCES)
-    yield from (row["title"] for row in table("contacts"))
+    yield from (row["title"] for name in ("contacts", "bodies") for row in table(name))
     yield from assumed().materials
     pairs = ((row.object_material, row.surface_material) for row in assumed().friction)
     backs = ((row.back_surface, row.wall_surface) for row in assumed().damping)
     yield from (name.lower() for pair in (*pairs, *backs) for name in pair)
+    yield from ON_ANY.values()
     yield from ("any material", "any floor", "its back", "the wall", "what stands", *WHAT_HANGS.values())
     yield from (f"critical section ({kind})" for kind in OF_CLASS)
     yield from ("wall of its foot", "narrower side", "narrower base side", "half width of what it lies on")

@@ -8,16 +8,15 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import TypeVar
 
+from pipeline.records import Furniture
 from pipeline.tables import Range, Row, TableError, read_table, table
 from pipeline.tables.assumed_rows import AssumedRow, Friction, Material, ObjectClass, PairRow, WallDamping
 from pipeline.tables.furniture_rows import FurnitureRow
 from pipeline.tables.rows import checked
+from pipeline.tables.surface_rows import met_on, surfaces_in
 
 UNKNOWN = "unknown"
 """The material of an object whose record names none that the table knows."""
-
-CHOSEN = ("coarse sandpaper", "teflon", "felt")
-"""Surfaces that are chosen on purpose, never met by chance."""
 
 _Assumed = TypeVar("_Assumed", bound=AssumedRow)
 _Pair = TypeVar("_Pair", bound=PairRow)
@@ -73,13 +72,18 @@ class AssumedValues:
         bare = _FINISH.sub("", text)
         return tuple(one for pattern, one in self._words if pattern.search(bare))
 
-    def friction_of(self, object_material: str = "", surface_material: str = "") -> tuple[Friction, ...]:
+    def friction_of(
+        self, object_material: str = "", surface_material: str = "", furniture: Furniture | None = None
+    ) -> tuple[Friction, ...]:
         """Return the frictions that a pair may have: all rows that are not ruled out.
 
         Parameters
         ----------
         object_material, surface_material : str
-            An empty name rules nothing out; a name that the table does not know leaves the other one to decide.
+            An empty name rules nothing out; a name that the table does not know leaves the other one to decide.  The
+            surface is told in the museum's words (surfaces.csv).
+        furniture : Furniture, optional
+            What it stands on or in: where no surface is told, only those count that are met there by chance.
 
         Returns
         -------
@@ -91,11 +95,16 @@ class AssumedValues:
         Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage
         mitigation methods for museum objects. Studies in Conservation 36. Table 3.
         """
-        rows = _matching(self.friction, object_material, surface_material)
-        if not surface_material:
-            rows = [row for row in rows if row.surface_material.lower() not in CHOSEN]
-        if not object_material:
-            rows = [row for row in rows if row.object_material.lower() != "teflon"]
+        told = surfaces_in(surface_material, of_surface=True)
+        if surface_material.strip() and not told:
+            told = (surface_material.strip().lower(),)
+        rows = _matching(self.friction, (object_material.strip().lower(),) if object_material.strip() else (), told)
+        if not surface_material.strip():
+            by_chance = [row for row in rows if row.pair[1] in met_on()]
+            there = [row for row in by_chance if row.pair[1] in met_on(furniture)]
+            rows = there or by_chance
+        if not object_material.strip():
+            rows = [row for row in rows if row.pair[0] != "teflon"]
         return tuple(rows)
 
     def damping_of(self, wall_surface: str = "", back_surface: str = "") -> tuple[WallDamping, ...]:
@@ -115,13 +124,17 @@ class AssumedValues:
         ----------
         Agbabian et al. (1991), as in `friction_of`, Table 4.
         """
-        return tuple(_matching(self.damping, wall_surface, back_surface))
+        wall, back = ((text.strip().lower(),) if text.strip() else () for text in (wall_surface, back_surface))
+        return tuple(_matching(self.damping, wall, back))
 
 
 _UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 _FINISH = re.compile(
     r"\b(?:\w+-|(?:tin|lead|salt|silver|copper|iron)\s+)(?=glaze)"
-    r"|\b\w+-(?:plated|coated|painted|leafed|fired|colou?red|toned|inlaid|trimmed|mounted|lined)\b",
+    r"|\b\w+-(?:plated|coated|painted|leafed|fired|colou?red|toned|inlaid|trimmed|mounted|lined)\b"
+    r"|\b(?:gold|silver|metal|copper|aluminium)\s+(?:leaf|paint|ground|dust|foil|powder|thread|lacquer)\b"
+    r"|\b(?:glass|enamel|ceramic|porcelain)\s+eyes\b|\b(?:Blattgold|Glasaugen|feuille d'or|foglia d'oro|pan de oro)\b"
+    r"|\b(?:yeux|occhi|ojos)\s+(?:de|en|di|in)\s+(?:verre|vetro|vidrio|cristal)\b|金箔|金泥|玉眼",
     re.IGNORECASE,
 )
 
@@ -136,14 +149,15 @@ def _any_of(words: Sequence[str]) -> re.Pattern[str]:
 def _material_in(values: AssumedValues, text: str) -> Material | None:
     # What something is only glazed or plated with is not what it is made of: "tin-glazed earthenware" is no tin.
     bare = _FINISH.sub("", text)
-    found = [(match.start(), one) for pattern, one in values._words if (match := pattern.search(bare))]
-    return min(found, key=lambda pair: pair[0])[1] if found else None
+    found = [(match.start(), -len(match[0]), one) for pattern, one in values._words if (match := pattern.search(bare))]
+    # Of two that begin there the longer one: papier-mâché is no paper.
+    return min(found, key=lambda each: each[:2])[2] if found else None
 
 
-def _matching(rows: Sequence[_Pair], first: str, second: str) -> list[_Pair]:
-    """Return the rows of the pair; where the table lacks it, those of either partner, so that the span says so."""
-    asked = [(at, text.strip().lower()) for at, text in enumerate((first, second)) if text.strip()]
-    found = [{row.pair for row in rows if row.pair[at] == text} for at, text in asked]
+def _matching(rows: Sequence[_Pair], first: Sequence[str], second: Sequence[str]) -> list[_Pair]:
+    """Return the rows of the pairs; where the table lacks them, those of either partner, so that the span says so."""
+    asked = [(at, names) for at, names in enumerate((first, second)) if names]
+    found = [{row.pair for row in rows if row.pair[at] in names} for at, names in asked]
     known = [pairs for pairs in found if pairs]
     pair = [row for row in rows if all(row.pair in pairs for pairs in known)]
     return pair or [row for row in rows if any(row.pair in pairs for pairs in known)]

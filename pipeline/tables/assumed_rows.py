@@ -11,6 +11,8 @@ from pipeline.records import Support
 from pipeline.tables import Range
 from pipeline.tables.rows import Entries, Number, Optional, RangeRow, TableRow, Text, YesNo, in_order
 
+_JUDGEMENT = "judgement"
+
 NO_MODEL, WHEN_HELD = "none", "held"
 """In the column models of classes.csv: no generic model applies; none does until it is recorded how it is held."""
 
@@ -285,7 +287,9 @@ class PairRow(AssumedRow, RangeRow):
     @property
     def said(self) -> str:
         """Who says so, in short."""
-        return f"{self.table} ({self.source})" if self.own else self.source.split(" (")[0]
+        if self.own:
+            return f"{self.table} ({self.source})"
+        return _JUDGEMENT if self.source.startswith(_JUDGEMENT) else self.source.split(" (")[0]
 
 
 class Friction(PairRow):

@@ -23,6 +23,9 @@ Model = TypeVar("Model")
 RowOfWay = TypeVar("RowOfWay", bound="TableRow")
 Way = TypeVar("Way", bound=StrEnum)
 
+SOME_WORDS = r"(?:\w+\W+){0,3}"
+"""What * stands for in the words of a table: up to three words."""
+
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
 

@@ -163,7 +163,7 @@ def test_every_range_of_class_and_material_travels_to_the_models(row: Row, mater
     borne = zip(("base_low", "base_ratio", "base_high"), (bears.low, bears.share, bears.high), strict=True)
     halves = [0.15 * float(row[c]) * share for c, share in borne]
     assert [getattr(found["half_width"], s) for s in ends] == pytest.approx(halves)
-    friction = span(assumed().friction_of(stuff["friction_as"]))
+    friction = span(assumed().friction_of(stuff["friction_as"], "", scene.furniture))
     assert [getattr(found["friction_static"], s) for s in ends] == [friction.low, friction.value, friction.high]
     tensile = [float(stuff[c]) for c in ("tensile_low", "tensile", "tensile_high")]
     assert [getattr(found["allowable_stress"], s) for s in ends] == tensile

@@ -93,8 +93,8 @@ def test_decided_verdicts_hold_at_all_corners_and_between_them(
         decided[found.model] += 1
         broken += max(each) > low if found.verdict is Verdict.PASS else min(each) <= high
     assert broken == 0
-    # Of few bases that are only assumed is a verdict on rocking sure.
-    assert min(decided.values()) > COUNT / 16
+    # Of few bases that are only assumed is a verdict on rocking sure, and of fewer where friction is from 0.1 to 0.9.
+    assert min(decided.values()) > COUNT / 64
 
 
 def test_every_combination_of_ends_comes_once() -> None:

@@ -110,6 +110,13 @@ def test_wax_is_not_put_on_what_it_harms(motion: Motion, medium: str) -> None:
     assert any(text.startswith("Microcrystalline wax: it harms ") for text in advice.rejected)
 
 
+def test_nothing_tall_is_stuck_down(motion: Motion) -> None:
+    """No mount-maker holds what is as tall as a person by dots of wax."""
+    tall = replace(LIGHT, height_m=1.7, base_width_m=0.6, base_depth_m=0.6, cg_height_m=0.6, mass_kg=5.0)
+    advice = solve(tall, motion.scaled(3.0, "more"))
+    assert advice.measure not in ("wax", "putty")
+
+
 def test_nothing_is_stuck_under_legs(motion: Motion) -> None:
     """What a mount-maker would not do, though dots under the whole of its footing would hold a chair."""
     advice = solve(replace(LIGHT, object_name="chair", title="Chair"), motion)

@@ -23,7 +23,7 @@ DEPTH = f"depth of its hooks: 0.0127 m (0.00508 to 0.0254), {WAYS}"
 CLEARANCE = "clearance: 10 cm (5 to 30) to neighbour, wall or edge, assumed for: vessel"
 MASS = "mass: bronze of 8700 kg/m3 filling 0.5 of its outline, assumed"
 FRAMED = "mass: 15 kg/m2 (5 to 40) of the face of a framed work, assumed"
-SOLID = "section: taken as solid from 12 kg on and as hollow below, its area with its mass: it is of metal"
+SOLID = "section: taken as solid from 12 kg on and as hollow below, its area with its mass: it is hollow or of sheet"
 SHEET = "the museum's record says 0.2 m, the sheet desk, A. Smith says 0.5 m, which is used"
 SCREEN = "A_max/g = 0.35 against B/H' = 0.1: rocks. V_max is 1.2 times 10 B/sqrt(H'): does not overturn."
 CASE = "furniture: a showcase, for its record names the case or plinth 'depth of its hooks: 3 m'"
@@ -43,7 +43,7 @@ FURNITURE = (
         (MASS, "in", "mass: bronze of 543\u202flb/ft³ filling 0.5 of its outline, assumed"),
         (FRAMED, "ft", "mass: 3.07\u202flb/ft² (1.02 to 8.19) of the face of a framed work, assumed"),
         (SOLID, "in", "section: taken as solid from 26.5\u202flb on and as hollow below, its area with its mass: it is "
-         "of metal"),
+         "hollow or of sheet"),
         (SHEET, "in", "the museum's record says 7\u00a0⅞\u00a0in, the sheet desk, A. Smith says 19\u00a0⅝\u00a0in, "
          "which is used"),
         (CASE, "in", CASE),

@@ -150,7 +150,7 @@ def test_table_1_and_2_of_the_paper() -> None:
 
 def test_table_3_of_the_paper() -> None:
     """Word for word and number for number, in the paper's order; the starred rows say that they are JPGM data."""
-    rows = [row for row in table("friction") if "Table 3" in row["source"] and "Agbabian" in row["source"]]
+    rows = [row for row in table("friction") if row["source"].startswith("Agbabian")]
     assert len(rows) == len(TABLE_3)
     for row, (words, value, starred) in zip(rows, TABLE_3, strict=True):
         said = f"{row['object_material']} on {row['surface_material']}"
@@ -175,9 +175,9 @@ def test_a_pair_of_table_3_is_looked_up(words: str, value: str, _starred: bool) 
 
 
 def test_an_unknown_pair_spans_what_is_not_ruled_out() -> None:
-    """Marble: Table 3 and wood, felt not counting; with nothing known, the least of Table 3 to clean glass on glass."""
+    """Marble: from polished floors of the paper to sawn stone on concrete, felt not counting."""
     marble = span(assumed().friction_of("marble"))
-    assert (marble.low, marble.value, marble.high) == (0.13, 0.15, 0.60)
+    assert (marble.low, marble.high) == (0.12, 0.90)
     anything = span(assumed().friction_of())
     assert (anything.low, anything.high) == (0.12, 1.00)
     mosaic = span(assumed().friction_of("", "mosaic"))

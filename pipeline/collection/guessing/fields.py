@@ -17,6 +17,7 @@ from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.collection.sources.rows import TypedNumber
+from pipeline.tables.held_rows import Told, told_by
 
 FEWEST = 5
 """Numbers in eighths or sixteenths from which a column is taken to be in inches."""
@@ -151,6 +152,17 @@ def flag_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | No
     """
     taken = {id(column) for column in used}
     return next((one for one in columns if id(one) not in taken and one.filled and says_flags(one.filled)), None)
+
+
+def tells_display(column: Column) -> bool:
+    """Say whether a column tells in words how objects are displayed or held, and is no flag and no vocabulary.
+
+    column : of texts
+    """
+    vocabulary = {one.value for one in CHOICES["support"]}
+    some = [text for text in column.distinct if flag_of(text, display=True) is None]
+    free = [text for text in some if text.casefold() not in vocabulary]
+    return len(free) >= 0.5 * len(column.distinct) > 0 and any(told_by(text) != Told() for text in free)
 
 
 @dataclass

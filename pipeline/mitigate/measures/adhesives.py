@@ -17,6 +17,10 @@ t b (1 + (r/b)^2 / 2) / (1 + r/b), which is never less than 0.73 t b.
 """
 
 
+TALLEST = 1.2
+"""Height [m] above which nobody trusts a thing to wax or putty, though it might hold: judgement."""
+
+
 class _Dots(Fixing):
     """Dots under its base: they hold by their area, of which its footing has room for a share only."""
 
@@ -34,6 +38,8 @@ class _Dots(Fixing):
         row = runner.values.classes.get(one.scene.object_class)
         if row is not None and row.section == "legs":
             return refused(N_("it stands on legs, which have no room for it under them"))
+        if (one.scene.item.height_m or 0.0) > TALLEST:
+            return refused(N_("it is taller than what is stuck down"))
         return super().propose(one, runner)
 
     def room(self, scene: Scene, worst: bool) -> float:

@@ -15,6 +15,9 @@ STEPS = (1.0, 1.4, 2.0, 2.8, 4.0, 5.6)
 """Rooms that are tried, over what it needs by the best estimates: each 1.4 times the one before."""
 
 
+LIGHT, HALL = 50.0, 2.0
+"""Mass of what hangs from above [kg] up to which it may swing, and how much farther than along a wall: judgement."""
+
 HAND = 0.10
 """Room that is spared around anything [m]; more only around what is itself as wide: judgement."""
 
@@ -58,7 +61,7 @@ class Clearance(Measure):
             return refused(N_("it does not move"))
         room = round_up(MARGIN * most)
         hangs = one.scene.support in (Support.HUNG, Support.SUSPENDED)
-        allowed = self.row.limit_high if hangs else self.row.limit
+        allowed = self.row.limit_high * _times(one.scene) if hangs else self.row.limit
         if room > allowed:
             return refused(say.NEEDS_ROOM(room=room, allowed=allowed))
         numbers = {"clearance": (room, "m"), "movement": (most, "m")}
@@ -113,12 +116,19 @@ class Clearance(Measure):
             return N_("room helps only what moves, and what hangs only where it is recorded how")
         best = max(f.demand or 0.0 for f in moving)
         hangs = one.scene.support in (Support.HUNG, Support.SUSPENDED)
-        allowed = self.row.limit_high if hangs else min(self.row.limit, _spared(one.scene))
+        allowed = self.row.limit_high * _times(one.scene) if hangs else min(self.row.limit, _spared(one.scene))
         rooms = tuple(dict.fromkeys(round_up(MARGIN * best * step) for step in STEPS))
         tried = tuple(room for room in rooms if 0.0 < room <= allowed)
         if tried:
             return tried
         return say.HAS_NO_ROOM(room=rooms[0], allowed=allowed)
+
+
+def _times(scene: Scene) -> float:
+    """Return how many times as much room is spared around what hangs from above and is light: it swings in a hall."""
+    mass = scene.parameters.get("mass")
+    light = mass is not None and mass.value <= LIGHT
+    return HALL if scene.support is Support.SUSPENDED and light else 1.0
 
 
 def _spared(scene: Scene) -> float:

@@ -12,6 +12,9 @@ from pipeline.models.common import N_
 from pipeline.models.hanger_load import pull
 from pipeline.records import Hanging, Scene, Support
 
+MOBILE = "mobile"
+"""How the reason of a class begins by whose rules a thing is a mobile."""
+
 
 class Restrain(Measure):
     """Fix a hung object to the wall at its lower corners too: what is left is the load on its fixings.
@@ -53,7 +56,7 @@ class Stays(Restrain):
 
     References
     ----------
-    FEMA E-74 (2012), sec. 6.4.9: heavy light fixtures are braced by inclined wires to all sides.
+    FEMA E-74 (2012), sec. 6.4.9, is that on light fixtures, 6.4.9.3 on pendant ones.
     """
 
     name = "stays"
@@ -65,3 +68,9 @@ class Stays(Restrain):
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:
         """Return it fixed: what is left is the load on what holds it."""
         return super().change(replace(scene, support=Support.HUNG), parameters)
+
+    def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
+        """Propose stays for the force of the push, but for what is made to move."""
+        if one.scene.rule.startswith(MOBILE):
+            return refused(N_("it is made to move: stays would still it"))
+        return super().propose(one, runner)

@@ -42,7 +42,7 @@ class _RougherSurface(Measure, ABC):
 FUMING = frozenset({"plywood"})
 """Surfaces of Table 3 that give off acids: in the air of a case these corrode lead and bronze, shell and some glasses.
 
-Tétreault 2003, Airborne Pollutants in Museums, Galleries and Archives.
+AIC Wiki, Safe and Harmful Materials for Use in Exhibits: plywood gives off formic and acetic acid.
 """
 
 
@@ -60,9 +60,9 @@ class Surface(_RougherSurface):
         item = one.scene.item
         material = (item.base_material or material_of(item, runner.values).friction_as).strip().lower()
         least = one.scene.parameters["friction_static"].low
-        pairs = [
-            (row.low, row.surface_material) for row in runner.values.friction if row.object_material.lower() == material
-        ]
+        # What only a handbook or judgement says of a pair is too wide a range to advise it by.
+        measured = (row for row in runner.values.friction if row.own or row.table == row.printed)
+        pairs = [(row.low, row.surface_material) for row in measured if row.object_material.lower() == material]
         rougher = sorted(pair for pair in pairs if least < pair[0] <= self.row.limit)
         harmless = [pair for pair in rougher if pair[1].lower() not in FUMING]
         if one.scene.furniture is Furniture.SHOWCASE and rougher and not harmless:

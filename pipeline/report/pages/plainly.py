@@ -6,7 +6,7 @@ The full sentence of a measure, with the moment, the margin and the friction, st
 from collections.abc import Callable, Mapping
 
 from pipeline.mitigate.by_class import NAMED_FIRST
-from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, OF_MEAN, SIZED
+from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, SIZED, UPPER_FIRST
 from pipeline.records import Recommendation
 from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
@@ -42,6 +42,10 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     write = by_hand(units)
     numbers = {name: write(name, value, advice.units.get(name, "")) for name, value in advice.parameters.items()}
     told = [_("First have what it stands in fastened.")] if advice.sentence.startswith(ANCHORED) else []
+    if HELD_FIRST in advice.sentence:
+        told.append(_("First record what holds it now as installed."))
+    if UPPER_FIRST in advice.sentence:
+        told.append(_("First fix the upper body to the one that it stands on."))
     phrase = _PHRASES[advice.measure]() if advice.measure in _PHRASES else ""
     try:
         told.append(phrase % numbers if phrase else f"{said(clean(advice.title))}.")
@@ -49,7 +53,7 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
         # Results of another version may lack a number: its title is true in any case.
         told.append(f"{said(clean(advice.title))}.")
     if OF_MEAN in advice.sentence:
-        told.append(_("That is for the mean of the earthquakes: in one of them it moves more."))
+        told.append(_("That is for the mean of the earthquakes: in the worst of them it moves %(worst)s.") % numbers)
     if HEAVIEST in advice.sentence:
         told.append(
             _("That is for a weight of %(heaviest)s, the most that it may have; by the best estimate it is %(weight)s.")
@@ -102,7 +106,7 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
     "restrain": lambda: _("Fix it to the wall at its lower corners too: the fixings must hold %(force)s together."),
     "stays": lambda: _(
         "Have it stayed from swinging by three or more lines or rods to the ceiling or the walls all round: each must "
-        "hold %(force)s."
+        "hold %(force)s. Give it a slack safety line too."
     ),
     "friction_isolator": lambda: _("Stand it on a low-friction pad, with %(clearance)s free on all sides."),
     "horizontal_isolator": lambda: _("Have it put on an isolator that moves by up to %(stroke)s."),

@@ -1,0 +1,145 @@
+"""Rows of bodies.csv: what is assumed of a thing more particularly than its class does, by its name and its size."""
+
+import re
+from functools import cache
+from typing import Annotated, Literal
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from pipeline.errors import InputError
+from pipeline.tables import table
+from pipeline.tables.assumed_rows import ObjectClass, Share
+from pipeline.tables.rows import SOME_WORDS, Entries, Number, TableRow, Text, YesNo, checked, in_order
+
+PAIR = "pair"
+"""Two bodies that stand on each other and are followed as one."""
+
+SCREEN = "screen"
+"""A folding screen, of which its face weighs."""
+
+_NUMBERS = (
+    *(f"{kind}_{end}" for kind in ("cg", "base", "section") for end in ("ratio", "low", "high")),
+    *("fill", "fill_low", "fill_high"),
+)
+_FOUND = ("cg", "base", "critical", "filled", "room")
+_BY_RULE = "rule:"
+
+
+class BodyRow(TableRow):
+    """A row of bodies.csv.
+
+    Attributes
+    ----------
+    body, title : str
+        In tables, and in words.
+    words : tuple of str
+        In an object's name or title, where * is up to three words; "rule:" before the name of a rule of
+        classification, * for any.
+    classes, materials : tuple of str
+        Of which it is; () for any.
+    taller_than : float
+        Height from which it holds [m].
+    cg_ratio, base_ratio, section_ratio, fill : float or None
+        As in classes.csv, with the ends of their ranges; of its base all bears that is within the range.
+    rocking_harms : bool
+        Whether rocking itself harms it.
+    source : str
+        Who says so.
+    """
+
+    body: Text
+    title: Text
+    words: Entries
+    classes: Entries
+    materials: Entries
+    taller_than: Annotated[Number, Field(ge=0.0)]
+    cg_ratio: Share
+    cg_low: Share
+    cg_high: Share
+    base_ratio: Share
+    base_low: Share
+    base_high: Share
+    section: Literal["", "foot"]
+    section_ratio: Share
+    section_low: Share
+    section_high: Share
+    fill: Share
+    fill_low: Share
+    fill_high: Share
+    rocking_harms: YesNo
+    source: Text
+
+    @field_validator("cg_high", "base_high", "section_high", "fill_high")
+    @classmethod
+    def _in_order(cls, high: float | None, info: ValidationInfo) -> float | None:
+        kind = str(info.field_name).removesuffix("_high")
+        value = "fill" if kind == "fill" else f"{kind}_ratio"
+        three = (info.data.get(f"{kind}_low"), info.data.get(value), high)
+        if None in three and any(one is not None for one in three):
+            raise InputError(f"{value}, {kind}_low and {kind}_high go together: fill all three, or none")
+        return in_order(high, info, f"{kind}_low", value)
+
+    def of_class(self, row: ObjectClass) -> ObjectClass:
+        """Return the row of a class as it holds of this body.
+
+        Parameters
+        ----------
+        row : ObjectClass
+            Kouros's own.
+        """
+        numbers = {name: getattr(self, name) for name in (*_NUMBERS, "section", "title", "rocking_harms", "source")}
+        out = row.model_copy(update={**numbers, "round": False})
+        for name in _FOUND:
+            # What was worked out of the class is not of this body.
+            out.__dict__.pop(name, None)
+        return out
+
+
+@cache
+def body_rows() -> tuple[BodyRow, ...]:
+    """Return the rows of bodies.csv, of which the first that holds counts.
+
+    Raises
+    ------
+    TableError
+        For a cell that cannot be used, naming it.
+    """
+    return checked(BodyRow, table("bodies"), "bodies.csv", named="body")
+
+
+def body_of(text: str, rule: str, object_class: str, material: str, height: float) -> BodyRow | None:
+    """Return the row that holds of a thing.
+
+    Parameters
+    ----------
+    text : str
+        Its name and title.
+    rule : str
+        The rule by which it is of its class.
+    object_class, material : str
+        Rows of classes.csv and materials.csv.
+    height : float
+        [m], 0 where it is not recorded.
+
+    Returns
+    -------
+    BodyRow or None
+        None where its class says what there is to say.
+    """
+    for pattern, row in _patterns():
+        by_rule = any(word in (f"{_BY_RULE}{rule}", f"{_BY_RULE}*") for word in row.words)
+        named = by_rule or (pattern is not None and pattern.search(text))
+        kind = (not row.classes or object_class in row.classes) and (not row.materials or material in row.materials)
+        if named and kind and height >= row.taller_than:
+            return row
+    return None
+
+
+@cache
+def _patterns() -> tuple[tuple[re.Pattern[str] | None, BodyRow], ...]:
+    out = []
+    for row in body_rows():
+        named = (re.escape(word) for word in row.words if not word.startswith(_BY_RULE))
+        words = [rf"\b{word}\b".replace(r"\*", SOME_WORDS) for word in named]
+        out.append((re.compile("|".join(words), re.IGNORECASE) if words else None, row))
+    return tuple(out)

@@ -1,0 +1,84 @@
+"""Rows of held_words.csv: how a thing is held and what it stands on, by the words that museums have for its display."""
+
+import re
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import Annotated
+
+from pydantic import BeforeValidator
+
+from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support
+from pipeline.tables import table
+from pipeline.tables.rows import SOME_WORDS, Entries, TableRow, Text, checked
+
+_JOINED = re.compile("[\u2e80-\u30ff\u3400-\u9fff\uac00-\ud7af]")
+
+
+def _nothing(cell: object) -> object:
+    return None if cell == "" else cell
+
+
+class HeldWords(TableRow):
+    """A row of held_words.csv: what some words tell; what they leave open is empty.
+
+    Attributes
+    ----------
+    words : tuple of str
+        One of which stands in the text; * is up to three words.
+    support, hanging, furniture, anchorage, mount
+        What they tell.
+    source : str
+        Who says so.
+    """
+
+    words: Entries
+    support: Annotated[Support | None, BeforeValidator(_nothing)]
+    hanging: Annotated[Hanging | None, BeforeValidator(_nothing)]
+    furniture: Annotated[Furniture | None, BeforeValidator(_nothing)]
+    anchorage: Annotated[Anchorage | None, BeforeValidator(_nothing)]
+    mount: Annotated[Mount | None, BeforeValidator(_nothing)]
+    source: Text
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a text tells of how a thing is displayed; None for what it leaves open."""
+
+    support: Support | None = None
+    hanging: Hanging | None = None
+    furniture: Furniture | None = None
+    anchorage: Anchorage | None = None
+    mount: Mount | None = None
+
+
+@cache
+def _rows() -> tuple[tuple[re.Pattern[str], HeldWords], ...]:
+    rows = checked(HeldWords, table("held_words"), "held_words.csv", named="words")
+    return tuple((re.compile("|".join(map(_pattern, row.words)), re.IGNORECASE), row) for row in rows)
+
+
+def _pattern(word: str) -> str:
+    # Chinese, Japanese and Korean part no words from each other.
+    inner = re.escape(word).replace(r"\*", SOME_WORDS)
+    return inner if _JOINED.search(word) else rf"(?<!\w){inner}(?!\w)"
+
+
+@lru_cache(maxsize=4096)
+def told_by(text: str) -> Told:
+    """Return what a text tells of how a thing is displayed.
+
+    Parameters
+    ----------
+    text : str
+        In the museum's words.
+
+    Returns
+    -------
+    Told
+        Of each thing that which the first row of the table says whose words are there.
+    """
+    found = [row for pattern, row in _rows() if pattern.search(text)] if text.strip() else []
+    names = ("support", "hanging", "furniture", "anchorage", "mount")
+    return Told(
+        **{name: next((one for row in found if (one := getattr(row, name)) is not None), None) for name in names}
+    )

@@ -1,0 +1,119 @@
+"""What is assumed of shapes: masses of shells, hides and screens, blocks of stone, two bodies, figures on stands."""
+
+from dataclasses import replace
+
+import pytest
+
+from pipeline.analysis.classify import classify, material_of
+from pipeline.analysis.usual import base_of
+from pipeline.records import Item, Mount, Support
+from pipeline.records import phrases as say
+from pipeline.tables import table
+from pipeline.tables.assumed import assumed
+
+WEIGHED = (
+    # Item, least and most that such a thing weighs [kg]: by handling them, written down before they were computed.
+    (Item("1", "G", object_name="taxidermy mount", title="Brown bear", medium="fur, hide, glass eyes; wooden base",
+          height_m=2.15, width_m=1.1, depth_m=0.95), 50.0, 300.0),
+    (Item("2", "G", object_name="sculpture", title="Reclining woman", medium="fibreglass",
+          height_m=0.9, width_m=2.0, depth_m=0.8), 15.0, 200.0),
+    (Item("3", "G", object_name="parade figure", title="Giant's head", medium="papier-mâché, feathers",
+          height_m=1.1, width_m=0.9, depth_m=0.95), 3.0, 60.0),
+    (Item("4", "G", object_name="sculpture", title="Inflatable rabbit", medium="inflated vinyl",
+          height_m=3.2, width_m=1.8, depth_m=1.5), 2.0, 60.0),
+    (Item("5", "G", object_name="folding screen", title="Cranes", medium="ink, colour and gold leaf on paper",
+          height_m=1.7, width_m=3.7), 8.0, 60.0),
+    (Item("6", "G", object_name="obelisk", title="Obelisk", medium="granite",
+          height_m=2.1, width_m=0.4, depth_m=0.4), 500.0, 900.0),
+    (Item("11", "G", object_name="tapestry", title="The Boar Hunt", medium="wool and silk", height_m=3.4, width_m=5.1),
+     10.0, 60.0),
+    (Item("12", "G", object_name="globe", title="Terrestrial globe in floor stand", medium="paper, plaster, brass, oak",
+          height_m=1.2, width_m=0.85, depth_m=0.85), 15.0, 80.0),
+    (Item("13", "G", object_name="harp", title="Double-action pedal harp", medium="maple, brass", height_m=1.78,
+          width_m=0.95, depth_m=0.55), 20.0, 60.0),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("item", "least", "most"), WEIGHED)
+def test_what_nobody_weighed_weighs_what_such_things_weigh(item: Item, least: float, most: float) -> None:
+    mass = classify(item).parameters["mass"]
+    assert least <= mass.value <= most
+    assert mass.low < mass.value < mass.high
+
+
+@pytest.mark.parametrize(
+    ("medium", "material"),
+    [
+        ("papier-mâché", "papier-mâché"),
+        ("papier", "paper"),
+        ("fur, hide, glass eyes", "taxidermy"),
+        ("ink, colour and gold leaf on paper", "paper"),
+        ("gold", "gold"),
+        ("carved red cedar", "wood"),
+        ("bois, yeux de verre", "wood"),
+    ],
+)
+def test_what_is_leaf_or_eyes_is_not_what_it_is_made_of(medium: str, material: str) -> None:
+    assert material_of(Item("1", "G", medium=medium)).name == material
+
+
+@pytest.mark.parametrize(
+    ("medium", "base"),
+    [
+        ("bronze on a marble base", "Marble"),
+        ("fur, hide, glass eyes; wooden base", "Wood"),
+        ("bronze, with a base of granite", "Stone"),
+        ("bronzo su base in marmo", "Marble"),
+        ("bronze", ""),
+    ],
+)
+def test_a_thing_slides_on_its_own_base(medium: str, base: str) -> None:
+    assert base_of(assumed(), Item("1", "G", medium=medium)) == base
+
+
+def test_a_block_of_one_stone_stands_on_all_of_its_foot() -> None:
+    """Half of 0.4 m, and not less than dressed stone bears on; its section is as wide."""
+    scene = classify(WEIGHED[5][0])
+    assert scene.parameters["half_width"].value == pytest.approx(0.19)
+    assert scene.parameters["half_width"].low == pytest.approx(0.14)
+    whole = 0.4**3 / 6.0
+    assert scene.parameters["section_modulus"].value == pytest.approx(whole * 0.95**6, rel=1e-6)
+
+
+def test_a_post_in_a_footing_is_as_thick_as_it_is() -> None:
+    post = Item("7", "G", object_name="totem pole", medium="red cedar", height_m=6.2, width_m=0.7, depth_m=0.6)
+    scene = classify(post)
+    assert scene.support is Support.FASTENED
+    assert scene.parameters["section_modulus"].value > 0.5 * 0.7 * 0.6**2 / 6.0
+
+
+def test_a_suit_on_a_stand_stands_and_a_helmet_is_held() -> None:
+    suit = Item("8", "G", object_name="armour", title="Field armour for man", medium="steel", height_m=1.78,
+                width_m=0.7, depth_m=0.55)  # fmt: skip
+    helmet = replace(suit, object_name="helmet", title="Helmet", height_m=0.3, width_m=0.25, depth_m=0.32)
+    stands, is_held = classify(suit), classify(helmet)
+    assert (stands.mount, is_held.mount) == (Mount.STANDING, Mount.UNKNOWN)
+    assert "standing" in stands.models
+    assert "standing" not in is_held.models
+    # A harness weighs 15 to 40 kg.
+    assert 15.0 <= stands.parameters["mass"].value <= 60.0
+
+
+def test_a_bust_with_its_column_is_two_bodies() -> None:
+    both = Item("9", "G", object_name="bust", title="Voltaire on a scagliola column", medium="marble", height_m=1.65,
+                width_m=0.45, depth_m=0.35)  # fmt: skip
+    assert say.TWO_BODIES() in classify(both).assumptions
+    assert say.TWO_BODIES() not in classify(replace(both, height_m=0.65)).assumptions
+
+
+def test_a_slab_that_stands_stands_on_its_edge() -> None:
+    relief = Item("10", "G", object_name="stele", medium="marble", height_m=1.45, width_m=0.6, depth_m=0.14,
+                  support=Support.FREESTANDING)  # fmt: skip
+    assert classify(relief).missing == ()
+    assert classify(relief).parameters["half_width"].high == pytest.approx(0.07)
+
+
+def test_bodies_name_classes_and_materials_that_there_are() -> None:
+    for row in table("bodies"):
+        assert set(filter(None, row["classes"].split("|"))) <= set(assumed().classes)
+        assert set(filter(None, row["materials"].split("|"))) <= set(assumed().materials)

@@ -1,0 +1,87 @@
+"""How a thing is displayed, in museums' words: what they tell of support, furniture, hanging and mount."""
+
+from dataclasses import replace
+
+import pytest
+
+from pipeline.analysis.classify import classify
+from pipeline.analysis.told import as_displayed
+from pipeline.records import Anchorage, Furniture, Hanging, Item, Mount, Origin, Support
+from pipeline.tables.held_rows import Told, told_by
+
+PLANE = Item("1", "Hall", object_name="aeroplane", title="Biplane", medium="wood, fabric", height_m=2.25,
+             width_m=7.4, depth_m=6.6, mass_kg=390.0)  # fmt: skip
+PLATE = Item("2", "Hall", object_name="plate", medium="earthenware", height_m=0.04, width_m=0.35, depth_m=0.35)
+BUST = Item("3", "Hall", object_name="bust", medium="marble", height_m=0.68, width_m=0.48, depth_m=0.28)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("suspended from ceiling by steel cables", Told(Support.SUSPENDED, None, Furniture.RAIL)),
+        ("hängt von der Decke", Told(Support.SUSPENDED, None, Furniture.RAIL)),
+        ("suspendu au plafond", Told(Support.SUSPENDED, None, Furniture.RAIL)),
+        ("screwed to the wall", Told(Support.HUNG, Hanging.FIXED)),
+        ("on wall with Velcro on a batten", Told(Support.HUNG, Hanging.FIXED)),
+        ("hung by chains from a picture rail", Told(Support.HUNG, Hanging.WIRE)),
+        ("an der Wand", Told(Support.HUNG)),
+        ("on a wall bracket", Told(Support.FREESTANDING, None, Furniture.SHELF)),
+        ("strapped to a steel brace at its back", Told(Support.FASTENED, None, None, None, Mount.SECURED)),
+        ("fixed in a concrete footing", Told(Support.FASTENED)),
+        ("on plate stand on shelf", Told(Support.FREESTANDING, None, Furniture.SHELF, None, Mount.LEANING)),
+        ("apoyado en la pared", Told(Support.FREESTANDING, None, None, None, Mount.LEANING)),
+        ("posé sur un socle en marbre", Told(Support.FREESTANDING, None, Furniture.PEDESTAL)),
+        ("Case 12, glass shelf 3", Told(None, None, Furniture.SHOWCASE)),
+        ("in drawer", Told(None, None, None, None, Mount.LYING)),
+        ("standing on a mannequin with wooden base", Told(Support.FREESTANDING)),
+        ("lying in showcase", Told(None, None, Furniture.SHOWCASE, None, Mount.LYING)),
+        ("bust standing loose on its column", Told(Support.FREESTANDING, None, Furniture.PEDESTAL,
+                                                   Anchorage.UNANCHORED)),
+        ("on wooden floor", Told(Support.FREESTANDING, None, Furniture.FLOOR)),
+        ("in showcase", Told(None, None, Furniture.SHOWCASE)),
+        ("third floor, room 3", Told()),
+        ("", Told()),
+    ],
+)  # fmt: skip
+def test_words_of_display(words: str, told: Told) -> None:
+    assert told_by(words) == told
+
+
+def with_words(item: Item, words: str) -> Item:
+    return replace(item, displayed=words)
+
+
+def test_what_hangs_from_the_ceiling_swings() -> None:
+    scene = classify(with_words(PLANE, "suspended from ceiling by steel cables"))
+    assert (scene.support, scene.models) == (Support.SUSPENDED, ("swing_3d",))
+    assert scene.furniture is Furniture.RAIL
+    assert any("as its record says of its display" in note for note in scene.assumptions)
+
+
+def test_a_plate_on_a_stand_leans_and_one_in_a_case_lies() -> None:
+    """It comes away from what it leans on where the push exceeds g times the tangent of its lean, 8 to 25 degrees."""
+    leaning, lying = classify(with_words(PLATE, "on plate stand")), classify(with_words(PLATE, "in showcase"))
+    assert leaning.mount is Mount.LEANING
+    assert lying.mount is None
+    slope = leaning.parameters["half_width"].value / leaning.parameters["cg_height"].value
+    assert 0.14 < slope < 0.47
+    assert slope < lying.parameters["half_width"].value / lying.parameters["cg_height"].value
+
+
+def test_what_is_strapped_is_to_be_recorded_as_installed() -> None:
+    scene = classify(with_words(BUST, "strapped to a steel brace at its back"))
+    assert scene.support is Support.FASTENED
+    assert "recorded as installed" in scene.assumptions[0]
+
+
+def test_a_record_goes_before_its_words() -> None:
+    item = replace(with_words(BUST, "on stone floor"), furniture=Furniture.PEDESTAL, support=Support.FASTENED)
+    told = as_displayed(item)
+    assert (told.furniture, told.support) == (Furniture.PEDESTAL, Support.FASTENED)
+    assert told.surface_material == "stone"
+
+
+def test_a_surface_told_by_its_display_is_that_of_its_friction() -> None:
+    friction = classify(with_words(BUST, "on stone floor")).parameters["friction_static"]
+    assert friction.origin is Origin.ASSUMED
+    assert (friction.low, friction.value, friction.high) == (0.15, 0.55, 0.85)
