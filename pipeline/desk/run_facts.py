@@ -1,9 +1,8 @@
 """The newest run as the desk shows it: a list of all objects to search, and where the results of each are."""
 
 import unicodedata
-from bisect import bisect_right
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from operator import itemgetter
@@ -15,6 +14,7 @@ from pipeline.analysis.classify import object_classes
 from pipeline.analysis.house.questions import MANY, stated_by
 from pipeline.analysis.survey import field_asked
 from pipeline.desk.errors import DeskError
+from pipeline.desk.word_index import WordIndex
 from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.workspace import Workspace
 from pipeline.planning.plan import ErrandPlan, gallery_order
@@ -97,16 +97,7 @@ class RunFacts:
         self.galleries = Counter(one.gallery for one in rows if one.on_display)
         self.classes = Counter(one.object_class for one in rows if one.on_display)
         # Now, and not by the first four who search at once.
-        self._searched = self._words()
-
-    def _words(self) -> tuple[str, list[int]]:
-        """The words of all objects, a line each, and where each line begins."""
-        lines = [folded(f"{o.number} {o.title} {o.gallery}") for o in self.objects]
-        starts, at = [], 1
-        for line in lines:
-            starts.append(at)
-            at += len(line) + 1
-        return "\n" + "\n".join(lines) + "\n", starts
+        self._words = WordIndex([folded(f"{o.number} {o.title} {o.gallery}") for o in self.objects])
 
     def found(self, words: str, gallery: str = "", state: str = "") -> Iterator[ListedObject]:
         """Yield the objects that have all words in number, title or gallery; one whose number it is comes first.
@@ -118,20 +109,9 @@ class RunFacts:
         first = exact if exact is not None and _is(exact, gallery, state) else None
         if first is not None:
             yield first
-        parts = sorted(asked.split(), key=len, reverse=True)
-        candidates = self._with(parts) if parts else iter(self.objects)
+        parts = asked.split()
+        candidates = (self.objects[at] for at in self._words.having(parts)) if parts else iter(self.objects)
         yield from (one for one in candidates if one is not first and _is(one, gallery, state))
-
-    def _with(self, parts: Sequence[str]) -> Iterator[ListedObject]:
-        text, starts = self._searched
-        at = text.find(parts[0])
-        while at >= 0:
-            end = text.find("\n", at + 1)
-            place = bisect_right(starts, at) - 1
-            line = text[starts[place] : end]
-            if all(part in line for part in parts[1:]):
-                yield self.objects[place]
-            at = text.find(parts[0], end)
 
     @cached_property
     def urgent(self) -> tuple[ListedObject, ...]:
