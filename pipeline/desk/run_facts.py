@@ -20,10 +20,11 @@ from pipeline.operations.workspace import Workspace
 from pipeline.planning.plan import ErrandPlan, gallery_order
 from pipeline.quantities import sorting_key
 from pipeline.records import Page, RunRecord
+from pipeline.records.likelihood import CLASS
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.plan_files import gathered_from
 from pipeline.report.files.walk_sheet import sheet_file
-from pipeline.report.pages.chances import class_title
+from pipeline.report.pages.chances import MOUNT, class_title
 from pipeline.report.pages.compose import page_name
 from pipeline.report.pages.describe import Sayings
 from pipeline.report.pages.views import State
@@ -58,6 +59,16 @@ class ListedObject:
     missing: str
     page: str
     rank: int
+
+    @property
+    def asks(self) -> str:
+        """The one field that is worth measuring, or CLASS or MOUNT, which nobody measures; "" for nothing."""
+        return asked_for(self.open_for, self.missing)
+
+
+def asked_for(open_for: str, missing: str) -> str:
+    """Return what is to be found out of an object, as of `ListedObject`."""
+    return open_for if open_for in (CLASS, MOUNT) else field_asked(open_for, missing)
 
 
 class RunFacts:
@@ -124,7 +135,7 @@ class RunFacts:
         alike = Counter((o.object_class, o.open_for, o.missing) for o in self.objects if o.on_display)
         open_ones: Counter[tuple[str, str]] = Counter()
         for (kind, parameter, missing), count in alike.items():
-            open_ones[kind, stated_by(field_asked(parameter, missing))] += count
+            open_ones[kind, stated_by(asked_for(parameter, missing))] += count
         many = [(kind, states, count) for (kind, states), count in open_ones.items() if states and count >= MANY]
         return tuple(sorted(many, key=lambda one: (-one[2], one[0], one[1])))
 

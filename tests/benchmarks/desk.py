@@ -10,8 +10,8 @@ from __future__ import annotations
 import os
 import random
 import time
-from http.client import HTTPConnection, HTTPException
 from concurrent.futures import ThreadPoolExecutor
+from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 from statistics import median, quantiles
 from urllib.parse import urlencode, urlsplit
