@@ -312,7 +312,7 @@ class ReportWriter:
             return key
         table, language = f"{READING}.csv", self.renderer.language
         with speaking(language):
-            listed = write_doubts(self._partial / table, doubts())
+            listed = write_doubts(self._partial / table, doubts(), self.renderer.units)
             self._files[table] = sum_of(self._partial / table)
             shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
             context: dict[str, Any] = {"museum": shown, "reading": reading_view(head.settings), "listed": listed}

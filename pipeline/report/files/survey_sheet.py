@@ -154,7 +154,7 @@ def _labelled(m: Measurable, length: str) -> str:
 
 
 def _cell_unit(unit: str, length: str) -> tuple[str, float]:
-    """Return in which unit a cell is filled in, "" for a ratio, and what a number in it is multiplied by to be in SI."""
+    """Return the unit of a cell to fill in, "" for a ratio, and what a number in it is multiplied by to be in SI."""
     if unit == "m":
         return length, LENGTHS[length]
     if unit == "kg":

@@ -61,7 +61,6 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     return " ".join(told)
 
 
-
 def brief_measure(advice: Recommendation, units: Units) -> str:
     """Return what is advised as a list of many objects says it: what to do, and what to find out before.
 
