@@ -3,7 +3,7 @@
 from pipeline.records.phrase import Clause
 
 STABILITY = Clause(
-    "Peak resultant acceleration {push:-~2f} g, velocity {speed:cm/s~0f}. H' is twice the height of the centre of "
+    "Peak resultant acceleration {push:-~2f}\u00a0g, velocity {speed:cm/s~0f}. H' is twice the height of the centre of "
     "gravity. Below H' = {crossing:cm~0f} there is no band in which an object rocks without overturning. The lines are "
     "the paper's closed-form criteria, which let nothing slide; the verdict comes from friction, the vertical shaking "
     "and the time history."

@@ -45,7 +45,7 @@ from pipeline.report.pages.compose import anchor_of, museum_view, page_head, pag
 from pipeline.report.pages.environment import environment, fill, script_of
 from pipeline.report.pages.errand_views import plan_page
 from pipeline.report.pages.further import further_pages
-from pipeline.report.pages.news import OPEN, news_pages, news_view, page_file
+from pipeline.report.pages.news import news_pages, news_view, page_file
 from pipeline.report.pages.reading import (
     IMAGES,
     INVENTORY,
@@ -362,7 +362,7 @@ class ReportWriter:
             hashes = [motion.hash[:16] for motion in head.motions]
             measured = drawn([key for key in drawings if not any(h in key for h in hashes)], drawings)
             return [
-                ("index.html", fill(env, "index.html", told | {"here": "index", "left_out": left_out, "open": OPEN})),
+                ("index.html", fill(env, "index.html", told | {"here": "index", "left_out": left_out})),
                 *(
                     (file, fill(env, "news.html", told | {"here": "news", "lines": lines, "number": number}))
                     for number, (file, lines) in enumerate(zip(told["files"], listed, strict=True), 1)
