@@ -323,14 +323,15 @@ def _mail(hook: EmailHook, event: Event, document: Mapping[str, Any], body: byte
     message["Message-ID"] = make_msgid(domain=hook.sender.rpartition("@")[2])
     message["Auto-Submitted"] = "auto-generated"
     good = document["last_good"]
-    of = f", of {good['finished']}" if good and good.get("finished") else ""
+    last = "There is no good report yet."
+    if good:
+        of = f", of {good['finished']}" if good.get("finished") else ""
+        last = f"The last good report: {good['report']} in the folder of reports{of}."
     lines = [
         *filter(None, [_NO_REPORT.get(event)]),
         *_told_lines(document),
         "",
-        f"The last good report: {good['report']} in the folder of reports{of}."
-        if good
-        else "There is no good report yet.",
+        last,
         f"At {document['time']}, by Kouros {document['version']}.  The attachment says more, for programs.",
     ]
     message.set_content("\n".join(lines) + "\n")
