@@ -50,7 +50,7 @@ def main() -> None:
         text = updated(file.read_bytes(), found)
         file.write_text(text, encoding="utf-8")
         left = sum(
-            not all([one.string] if isinstance(one.string, str) else one.string)
+            one.fuzzy or not all([one.string] if isinstance(one.string, str) else one.string)
             for one in read_po(BytesIO(text.encode()))
         )
         print(f"{file.relative_to(ROOT)}: {len(found)} phrases, {left} to translate")

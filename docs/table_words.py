@@ -104,7 +104,7 @@ COLUMN_WORDS = {
     "p_rocks": "probability that it rocks",
     "p_falls": "probability that it falls",
     "p_breaks": "probability that it breaks",
-    "open_for": "the parameter whose measurement alone may change what is decided; `class` for what it is",
+    "open_for": "what may change what is decided: a parameter, `class` for what it is, `mount` for how that grips",
     "worth": "by how much that measurement lowers the expected loss, as a share of the loss by harm",
     "expected_loss": "probability times what is at stake, in objects of class C",
     "check_sizes": "whether its sizes are to be checked before anything is done: it hardly stands like that",

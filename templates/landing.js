@@ -4,9 +4,9 @@
   // without it.  Words for ages are the browser's own, in the language of the page.
   var words;
   try {
-    words = new Intl.RelativeTimeFormat(document.documentElement.lang);
+    words = new Intl.RelativeTimeFormat(document.documentElement.lang, { numeric: "auto" });
   } catch (unknown) {
-    words = new Intl.RelativeTimeFormat();
+    words = new Intl.RelativeTimeFormat(undefined, { numeric: "auto" });
   }
   function said(minutes) {
     if (minutes < 90) { return words.format(-Math.round(minutes), "minute"); }

@@ -14,6 +14,7 @@ from pipeline.analysis.response_charts import SAFETY, ChartCache, ResponseChart
 from pipeline.models import MODELS
 from pipeline.models.common import curve, rounded
 from pipeline.records import Chart, ChartFigure, Curve, Figure, Model, Motion, Numerics
+from pipeline.records import chart_words as on_chart
 from pipeline.records.numerics import SCAN
 
 PICTURED = 2e-2
@@ -109,7 +110,4 @@ def _told(made: Mapping[str, ResponseChart]) -> str:
         f"{100.0 * one.worst(one.outputs[0]) / SAFETY:.2g} %" + (f" ({label})" if label else "")
         for label, one in made.items()
     ]
-    return (
-        f"Drawn from {count:,} analyses, closest together where the response turns. Error measured at points held out: "
-        f"at most {', '.join(errors)} of the value, or of a hundredth of the largest value where that is more."
-    )
+    return on_chart.DRAWN_FROM(count=f"{count:,}", errors=", ".join(errors))

@@ -51,7 +51,8 @@ def decide(
     \b
     accept                          the risk is accepted; the computed verdict stays, and the decision beside it
     verdict pass|fail --model M     the person's verdict, beside the computed one
-    installed MEASURE NAME=VALUE... a measure is in place, in SI units: the next run computes the object with it;
+    installed MEASURE NAME=VALUE... a measure is in place: the next run computes the object with it; numbers are in SI
+                                    units, lengths and masses in others where they say so (4in, 3lb);
                                     isolator=NAME takes the numbers of an isolator from the museum's catalogue
     class CLASS                     the object is of this class: the next run takes it as such
     withdraw ID                     an earlier decision ends

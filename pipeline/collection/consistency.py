@@ -9,6 +9,7 @@ from typing import Any
 from pipeline.collection.unit_audit import SOLID
 from pipeline.quantities import figures
 from pipeline.records import SECTION_SHAPES, ContactPolygon, Problem
+from pipeline.records import phrases as say
 from pipeline.tables.assumed import assumed
 
 HEAVIEST = 22_600.0
@@ -45,16 +46,14 @@ def contradictions(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
     for field, what in (("cg_height_m", "centre of gravity"), ("section_height_m", "weakest section")):
         value = values.get(field)
         if value is not None and height is not None and value > height * _TOLERANCE:
-            message = (
-                f"the {what} at {figures(value, 4)} m would lie above the object, which is {figures(height, 4)} m high"
-            )
-            out.append((field, Problem(field, message, "measure both again; the height is used")))
+            message = say.LIES_ABOVE(size=what, above=value, height=height)
+            out.append((field, Problem(field, message, f"{say.MEASURE_BOTH()}; {say.HEIGHT_USED()}")))
     for field, largest in (("base_width_m", "width_m"), ("base_depth_m", "depth_m")):
         value, most = values.get(field), values.get(largest)
         across = max(filter(None, (values.get("width_m"), values.get("depth_m"))), default=None)
         if value is not None and most is not None and across is not None and value > across * _TOLERANCE:
-            message = f"the base is {figures(value, 4)} m wide, the object at its widest {figures(across, 4)} m"
-            remedy = "measure both again; the base is used, as overall sizes are often given without it"
+            message = say.BASE_WIDER(base=value, widest=across)
+            remedy = f"{say.MEASURE_BOTH()}; {say.BASE_USED()}"
             out.append(("", Problem(field, message, remedy)))
     out += _contact(values)
     shape = str(values.get("section_shape") or "").strip()

@@ -16,8 +16,8 @@ from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.mapping import ColumnMap, Texts
 from pipeline.collection.measured_cell import written
 from pipeline.collection.record import TEXT_LIMIT
-from pipeline.quantities import figures
 from pipeline.records import Origin, Problem, Provenance
+from pipeline.records import phrases as say
 
 FIELDS: Mapping[str, tuple[str, ...]] = {
     "height": ("height_m",),
@@ -68,9 +68,9 @@ _WORTH_A_WORD = {
     "contradiction": "measure it again, and correct the text in the museum's database",
     "conversion": "measure it again, and correct the text in the museum's database",
     "missing_unit": 'write the unit into the text, or say it in the mapping, [dimensions] unit = "..."',
-    "ambiguous": "write which number is which, such as H 10 x W 5 cm",
+    "ambiguous": say.NAME_NUMBERS(),
     "label": _LANGUAGE,
-    "unused": "see which of them is the object's, and correct the text in the museum's database",
+    "unused": say.WHOSE_IS_IT(),
     "part": "measure the whole object, or write which size is whose, such as Overall: H 10 x W 5 cm",
     "remainder": "write it as in H 10 x W 5 x D 3 cm, or see that nothing in it matters",
     "truncated": "shorten it in the museum's database",
@@ -146,8 +146,7 @@ def _fill_from(
             continue
         found = True
         if what == "mass" and choice.why.startswith(_PART):
-            message = f"only a part is weighed ({figures(choice.value, 4)} kg), which is not the mass of the object"
-            cells.problems.append(Problem("mass_kg", message, "weigh the whole object"))
+            cells.problems.append(Problem("mass_kg", say.ONLY_PART_WEIGHED(mass=choice.value), say.WEIGH_WHOLE()))
             continue
         for field in fields:
             if field in unframed:
@@ -224,12 +223,10 @@ def _differs(field: str, value: float, choice: Choice, cells: Cells, texts_hold:
         return False
     if agree(value, choice.value, "mass" if field == "mass_kg" else "length"):
         return False
-    unit, used = "kg" if field == "mass_kg" else "m", "text" if texts_hold else "column"
-    message = (
-        f"the text says {figures(choice.value, 4)} {unit} ({choice.why}), its own column {figures(value, 4)}; the "
-        f"{used} is used"
-    )
-    cells.problems.append(Problem(field, message, "see which is right, and correct the other"))
+    differs = say.TEXT_WEIGHS_OTHERWISE if field == "mass_kg" else say.TEXT_DIFFERS
+    used = say.TEXT_USED if texts_hold else say.COLUMN_USED
+    message = f"{differs(text=choice.value, reasons=choice.why, column=value)}; {used()}"
+    cells.problems.append(Problem(field, message, say.WHICH_IS_RIGHT()))
     return True
 
 

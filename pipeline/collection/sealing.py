@@ -159,6 +159,7 @@ def require_sound(connection: Connection, table: Table, condition: ColumnElement
 
 
 @cache
+@cache
 def _whole(table: Table) -> Select[Any]:
     return select(*_sealed(table), table.c.seal)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from pipeline.analysis.house.questions import VOCABULARIES
 from pipeline.analysis.house.rule import CRITERIA, QUANTITIES, HouseRule, Span
-from pipeline.analysis.survey import field_asked, measurables
+from pipeline.analysis.survey import measurables
 from pipeline.collection.inventory import items_named
 from pipeline.desk.asking import Asked, DeskAnswer, page_number
 from pipeline.desk.entering import labels, rules_version
@@ -21,10 +21,11 @@ from pipeline.desk.words import lasting, name_told
 from pipeline.planning.efforts import EffortSpan
 from pipeline.quantities import sorting_key
 from pipeline.records import DecisionKind, Support, in_force
+from pipeline.records.likelihood import CLASS
 from pipeline.report.assumed import assumed
 from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
-from pipeline.report.pages.chances import class_title
+from pipeline.report.pages.chances import MOUNT, class_title, name_of
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.errand_views import priced, spanned, title_of, trade_word
 from pipeline.report.pages.house_words import STATED, stated_told, word_told
@@ -189,47 +190,38 @@ def survey(asked: Asked) -> DeskAnswer:
     """Show what is worth measuring: all galleries, or one in walking order with minutes."""
     run, gallery = asked.site.run, asked.query.get("gallery")
     if gallery is None:
-        wanted = [name for name in run.order if any(_asks(one) for one in run.in_gallery(name))]
+        wanted = [name for name in run.order if any(one.asks for one in run.in_gallery(name))]
         burns = [_burn(asked, name) for name in wanted]
-        walk = [one for name in wanted for one in run.in_gallery(name) if _asks(one)]
+        walk = [one for name in wanted for one in run.in_gallery(name) if one.asks]
         missing = sum(one.state == State.UNKNOWN for one in walk)
         context: dict[str, Any] = {"burns": burns, "total": _summed(burns), "lasting": lasting}
         return DeskAnswer("survey.html", context | {"missing": missing, "open": len(walk) - missing})
-    walk = [one for one in run.in_gallery(gallery) if _asks(one)]
+    walk = [one for one in run.in_gallery(gallery) if one.asks]
     if not walk:
         raise NotThereError(f"there is nothing to measure in {gallery[:60]!r}")
     done = _measured(asked, walk)
-    entry = [(one, labels().get(field) or _("What it is"), _minutes(field), one.number in done, field) for one in walk
-             for field in (_asks(one),)]  # fmt: skip
+    entry = [(one, labels().get(field) or name_of(field), _minutes(field), one.number in done, field) for one in walk
+             for field in (one.asks,)]  # fmt: skip
     following = next((one.number for one, *_rest, is_done, _field in entry if not is_done), "")
     context = {"burn": _burn(asked, gallery), "walk": entry, "following": following, "name": gallery}
     context["lasting"] = lasting
     return DeskAnswer("survey_gallery.html", context)
 
 
-CLASS = "class"
-"""What is asked of an object of which nobody knows what it is: no measurement, a word."""
-
-
-def _asks(one: ListedObject) -> str:
-    """Return the one field of an object that is worth measuring, or CLASS; "" for none."""
-    return one.open_for if one.open_for == CLASS else field_asked(one.open_for, one.missing)
-
-
 def _measured(asked: Asked, walk: Sequence[ListedObject]) -> set[str]:
-    wanted = [one for one in walk if _asks(one) != CLASS]
+    wanted = [one for one in walk if one.asks not in (CLASS, MOUNT)]
     items = items_named(asked.site.workspace.engine, [one.number for one in wanted])
-    done = {one.number for one in wanted if one.number in items and getattr(items[one.number], _asks(one)) is not None}
-    named = (one.number for one in walk if _asks(one) == CLASS)
+    done = {one.number for one in wanted if one.number in items and getattr(items[one.number], one.asks) is not None}
+    named = (one.number for one in walk if one.asks == CLASS)
     return done | {
         number for number in named if any(d.kind is DecisionKind.CLASS for d in in_force(asked.site.log(number)))
     }
 
 
 def _burn(asked: Asked, gallery: str) -> Burn:
-    walk = [one for one in asked.site.run.in_gallery(gallery) if _asks(one)]
+    walk = [one for one in asked.site.run.in_gallery(gallery) if one.asks]
     done = _measured(asked, walk)
-    left = sum(_minutes(_asks(one)) for one in walk if one.number not in done)
+    left = sum(_minutes(one.asks) for one in walk if one.number not in done)
     return Burn(gallery, len(walk), len(done), ceil(left))
 
 

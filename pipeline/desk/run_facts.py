@@ -1,9 +1,8 @@
 """The newest run as the desk shows it: a list of all objects to search, and where the results of each are."""
 
 import unicodedata
-from bisect import bisect_right
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from operator import itemgetter
@@ -15,15 +14,17 @@ from pipeline.analysis.classify import object_classes
 from pipeline.analysis.house.questions import MANY, stated_by
 from pipeline.analysis.survey import field_asked
 from pipeline.desk.errors import DeskError
+from pipeline.desk.word_index import WordIndex
 from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.workspace import Workspace
 from pipeline.planning.plan import ErrandPlan, gallery_order
 from pipeline.quantities import sorting_key
 from pipeline.records import Page, RunRecord
+from pipeline.records.likelihood import CLASS
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.plan_files import gathered_from
 from pipeline.report.files.walk_sheet import sheet_file
-from pipeline.report.pages.chances import class_title
+from pipeline.report.pages.chances import MOUNT, class_title
 from pipeline.report.pages.compose import page_name
 from pipeline.report.pages.describe import Sayings
 from pipeline.report.pages.views import State
@@ -58,6 +59,16 @@ class ListedObject:
     missing: str
     page: str
     rank: int
+
+    @property
+    def asks(self) -> str:
+        """The one field that is worth measuring, or CLASS or MOUNT, which nobody measures; "" for nothing."""
+        return asked_for(self.open_for, self.missing)
+
+
+def asked_for(open_for: str, missing: str) -> str:
+    """Return what is to be found out of an object, as of `ListedObject`."""
+    return open_for if open_for in (CLASS, MOUNT) else field_asked(open_for, missing)
 
 
 class RunFacts:
@@ -97,16 +108,7 @@ class RunFacts:
         self.galleries = Counter(one.gallery for one in rows if one.on_display)
         self.classes = Counter(one.object_class for one in rows if one.on_display)
         # Now, and not by the first four who search at once.
-        self._searched = self._words()
-
-    def _words(self) -> tuple[str, list[int]]:
-        """The words of all objects, a line each, and where each line begins."""
-        lines = [folded(f"{o.number} {o.title} {o.gallery}") for o in self.objects]
-        starts, at = [], 1
-        for line in lines:
-            starts.append(at)
-            at += len(line) + 1
-        return "\n" + "\n".join(lines) + "\n", starts
+        self._words = WordIndex([folded(f"{o.number} {o.title} {o.gallery}") for o in self.objects])
 
     def found(self, words: str, gallery: str = "", state: str = "") -> Iterator[ListedObject]:
         """Yield the objects that have all words in number, title or gallery; one whose number it is comes first.
@@ -118,20 +120,9 @@ class RunFacts:
         first = exact if exact is not None and _is(exact, gallery, state) else None
         if first is not None:
             yield first
-        parts = sorted(asked.split(), key=len, reverse=True)
-        candidates = self._with(parts) if parts else iter(self.objects)
+        parts = asked.split()
+        candidates = (self.objects[at] for at in self._words.having(parts)) if parts else iter(self.objects)
         yield from (one for one in candidates if one is not first and _is(one, gallery, state))
-
-    def _with(self, parts: Sequence[str]) -> Iterator[ListedObject]:
-        text, starts = self._searched
-        at = text.find(parts[0])
-        while at >= 0:
-            end = text.find("\n", at + 1)
-            place = bisect_right(starts, at) - 1
-            line = text[starts[place] : end]
-            if all(part in line for part in parts[1:]):
-                yield self.objects[place]
-            at = text.find(parts[0], end)
 
     @cached_property
     def urgent(self) -> tuple[ListedObject, ...]:
@@ -144,7 +135,7 @@ class RunFacts:
         alike = Counter((o.object_class, o.open_for, o.missing) for o in self.objects if o.on_display)
         open_ones: Counter[tuple[str, str]] = Counter()
         for (kind, parameter, missing), count in alike.items():
-            open_ones[kind, stated_by(field_asked(parameter, missing))] += count
+            open_ones[kind, stated_by(asked_for(parameter, missing))] += count
         many = [(kind, states, count) for (kind, states), count in open_ones.items() if states and count >= MANY]
         return tuple(sorted(many, key=lambda one: (-one[2], one[0], one[1])))
 

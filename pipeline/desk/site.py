@@ -1,5 +1,6 @@
 """What all pages of the desk share: the workspace, the newest run, the decisions; each renewed when it changes."""
 
+import gc
 import logging
 import time
 from pathlib import Path
@@ -20,7 +21,7 @@ from pipeline.store.reuse import whole_runs
 
 logger = logging.getLogger(__name__)
 
-AT_ONCE = 4
+AT_ONCE = 2
 """Pages that are filled in at a time: Python computes one after the other, and more only get in each other's way."""
 
 LOOK = 2.0
@@ -97,6 +98,7 @@ class DeskSite:
                     self._run = RunFacts(self.workspace)
                     self.environment = environment(self._run.language)
                     self.fragment = fragments(self.environment, "desk/_fields.html")
+                    _settled()
                     logger.info("the desk shows run %s", self._run.run_id)
                 self._looked = time.monotonic()
             return self._run
@@ -156,3 +158,10 @@ class DeskSite:
         """
         run, newest = self.run, self._renew(newest)
         return self.objects.facts(run, number, self._log.get(number, ()), pictured=newest[2] > 0)
+
+
+def _settled() -> None:
+    """Spare what is kept of a run from being looked through, again and again, for what nobody needs any more."""
+    gc.unfreeze()
+    gc.collect()
+    gc.freeze()

@@ -21,6 +21,7 @@ from pipeline.models.friction import stick_slip, stick_slip_trace
 from pipeline.models.sliding import DIRECTIONS
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Harm, Model, Scene, Support, Trials
+from pipeline.records import chart_words as on_chart
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -89,7 +90,9 @@ HORIZONTAL_ISOLATOR = Model(
             x=Axis("Isolator frequency", "Hz", "log"),
             y=Axis("Peak acceleration", "m/s2"),
             source="Agbabian et al. 1991, Figure 6",
-            curves={f"friction {m:.2f}": {"friction": m, "damping": 0.02} for m in (0.05, 0.10, 0.15, 0.20)},
+            curves={
+                on_chart.OF_FRICTION(friction=m): {"friction": m, "damping": 0.02} for m in (0.05, 0.10, 0.15, 0.20)
+            },
         ),
     ),
 )

@@ -25,6 +25,7 @@ from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.models.sharing import shared
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Axis, Bounds, Chart, Columns, Excitation, Figure, Model, Motion, Scene, Trials
+from pipeline.records import chart_words as on_chart
 
 MOST_PHASE = 2e6
 """Radians of an oscillator's own, its damping counted in, in a sample interval from which on it is refused."""
@@ -192,17 +193,17 @@ SPECTRUM_FREQUENCIES = np.round(np.geomspace(0.2, 50.0, 96), 4)
 
 def _spectrum(key: str, motion: Motion) -> Chart:
     curves = []
-    for label, angle in (("east", 0.0), ("north", 90.0)):
+    for label, angle in ((on_chart.EAST, 0.0), (on_chart.NORTH, 90.0)):
         for damping in (0.02, 0.05):
             given = {"frequency": SPECTRUM_FREQUENCIES, "damping": np.full_like(SPECTRUM_FREQUENCIES, damping)}
             felt = _run(motion.excitation(angle), given, 1, False)["pseudo_acceleration"]
-            curves.append(curve(f"{label}, {100.0 * damping:.0f} %", SPECTRUM_FREQUENCIES, felt))
+            curves.append(curve(label(damping=damping), SPECTRUM_FREQUENCIES, felt))
     return Chart(
         key,
-        "Acceleration felt by a flexible object",
-        "Pseudo-acceleration of an oscillator; a rigid object (33 Hz and more) feels the peak acceleration.",
-        Axis("Natural frequency", "Hz", "log"),
-        Axis("Pseudo-acceleration", "m/s2"),
+        N_("Acceleration felt by a flexible object"),
+        N_("Pseudo-acceleration of an oscillator; a rigid object (33 Hz and more) feels the peak acceleration."),
+        Axis(N_("Natural frequency"), "Hz", "log"),
+        Axis(N_("Pseudo-acceleration"), "m/s2"),
         tuple(curves),
         source="Agbabian et al. 1991, sec. 2.5; Nigam and Jennings 1969",
     )

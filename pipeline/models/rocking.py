@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 from pipeline.kernels import flags
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.models.common import (
+    N_,
     NO_VERTICAL,
     SENSITIVE,
     broadcast,
@@ -94,6 +95,7 @@ from pipeline.records import (
     Trials,
     Zone,
 )
+from pipeline.records import chart_words as on_chart
 
 
 def uplift_ratios(motion: Excitation, body: Array) -> Array:
@@ -206,24 +208,18 @@ def _stability(key: str, motion: Motion) -> Chart:
 
     floor, ceiling = np.full_like(heights, low), np.full_like(heights, high)
     zones = (
-        band("stands", uplift, ceiling, "safe"),
-        band("rocks", overturn, uplift, "warn"),
-        band("overturns", floor, overturn, "danger"),
+        band(N_("stands"), uplift, ceiling, "safe"),
+        band(N_("rocks"), overturn, uplift, "warn"),
+        band(N_("overturns"), floor, overturn, "danger"),
     )
     crossing = (speed / slope) ** 2 if slope > 0.0 else 0.0
-    caption = (
-        f"Peak resultant acceleration {slope:.2f} g, velocity {100.0 * speed * VELOCITY_SCREEN:.0f} cm/s. "
-        "H' is twice the height of the centre of gravity. "
-        f"Below H' = {100.0 * crossing:.0f} cm there is no band in which an object rocks without overturning. "
-        "The lines are the paper's closed-form criteria, which let nothing slide; the verdict comes from friction, "
-        "the vertical shaking and the time history."
-    )
+    caption = on_chart.STABILITY(push=slope, speed=speed * VELOCITY_SCREEN, crossing=crossing)
     return Chart(
         key,
-        "Rocking stability",
+        N_("Rocking stability"),
         caption,
-        Axis("Equivalent height H'", "m", "log"),
-        Axis("Base width B", "m", "log"),
+        Axis(N_("Equivalent height H'"), "m", "log"),
+        Axis(N_("Base width B"), "m", "log"),
         (
             curve("A_max/g = B/H'", heights, uplift),
             curve("V_max = 10 B/√H'", heights, np.clip(speed * np.sqrt(heights), low, high)),

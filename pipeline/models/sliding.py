@@ -18,7 +18,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.models.common import NO_VERTICAL, SHIFT, curve, lift_ratios, needs, unless_free
+from pipeline.models.common import N_, NO_VERTICAL, SHIFT, curve, lift_ratios, needs, unless_free
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.quantities import Array, Quantity
 from pipeline.records import (
@@ -38,6 +38,7 @@ from pipeline.records import (
     Support,
     Trials,
 )
+from pipeline.records import chart_words as on_chart
 
 FRICTION_STATIC = Quantity("friction_static", "-", "coefficient at rest", 0.0)
 FRICTION_KINETIC = Quantity(
@@ -107,10 +108,10 @@ def _path(key: str, motion: Motion) -> Chart:
     far = float(np.hypot(path["u_x"], path["u_y"]).max())
     return Chart(
         key,
-        f"Path of an object with friction {PATH_FRICTION:g}",
-        f"Seen from above, from where it stood (0, 0). It gets {100.0 * far:.1f} cm away.",
-        Axis("East", "m"),
-        Axis("North", "m"),
+        on_chart.PATH(friction=PATH_FRICTION),
+        on_chart.PATH_SEEN(far=far),
+        Axis(N_("East"), "m"),
+        Axis(N_("North"), "m"),
         (curve("", x, y),),
         equal=True,
         source="Agbabian et al. 1991, Figure 3",

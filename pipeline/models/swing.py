@@ -38,6 +38,7 @@ from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.models.sharing import shared
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Hanging, Model, Scene, Support, Trials
+from pipeline.records import chart_words as on_chart
 from pipeline.records import run_sentences as say
 
 CHANDELIER = 1.4
@@ -248,7 +249,7 @@ SWING = Model(
             x=Axis("Suspension length", "m", "log"),
             y=Axis("Largest displacement", "m"),
             source="Agbabian et al. 1991, Figure 5",
-            curves={f"damping {d:.2f}": {"damping": d} for d in (0.0, 0.05, 0.10, 0.20)},
+            curves={on_chart.OF_DAMPING(damping=d): {"damping": d} for d in (0.0, 0.05, 0.10, 0.20)},
             # Below, verdicts need a chart and nobody a picture.
             low=0.1,
             azimuth_step=PICTURED_EVERY,

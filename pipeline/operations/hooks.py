@@ -39,6 +39,12 @@ SUBJECTS: Mapping[Event, str] = {
     "shaken": "after an earthquake",
 }
 
+_NO_REPORT: Mapping[str, str] = {
+    "failed": "THE NIGHT FAILED and brought no new report. Because:",
+    "shrunk": "THE NIGHT STOPPED and brought no new report, because the collection is much smaller than before:",
+}
+"""How a mail begins of a night that leaves an older report to be read."""
+
 _SAID = 500
 """Characters of what a program or a server answers that are repeated."""
 
@@ -317,10 +323,15 @@ def _mail(hook: EmailHook, event: Event, document: Mapping[str, Any], body: byte
     message["Message-ID"] = make_msgid(domain=hook.sender.rpartition("@")[2])
     message["Auto-Submitted"] = "auto-generated"
     good = document["last_good"]
+    last = "There is no good report yet."
+    if good:
+        of = f", of {good['finished']}" if good.get("finished") else ""
+        last = f"The last good report: {good['report']} in the folder of reports{of}."
     lines = [
+        *filter(None, [_NO_REPORT.get(event)]),
         *_told_lines(document),
         "",
-        f"The last good report: {good['report']} in the folder of reports." if good else "There is no good report yet.",
+        last,
         f"At {document['time']}, by Kouros {document['version']}.  The attachment says more, for programs.",
     ]
     message.set_content("\n".join(lines) + "\n")

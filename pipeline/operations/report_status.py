@@ -17,7 +17,7 @@ from pipeline.operations.presentation import presentation
 from pipeline.operations.run_summary import SUMMARY, Summary, exit_code_of, is_fault, write_aside
 from pipeline.report import Language, ReportError
 from pipeline.report.pages.landing import MARK, landing_page
-from pipeline.report.pages.news import OPEN
+from pipeline.report.pages.news import KEPT
 from pipeline.settings import Settings
 
 STATUS = "status.json"
@@ -247,7 +247,7 @@ def _kept(told: Mapping[str, Any]) -> dict[str, Any]:
             "counts": changes["news"].get("counts", {}),
             "because": changes["news"].get("because", []),
             "shared": changes.get("shared", {}),
-            "objects": changes["objects"][:OPEN],
+            "objects": changes["objects"][:KEPT],
         }
     return {"counts": counts if all(isinstance(n, int) for n in counts.values()) else None, "news": news}
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 
 from pipeline.analysis.classify import object_classes
 from pipeline.quantities import LENGTHS
+from pipeline.records.chart_words import CHART_WORDS
 from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES
 from pipeline.records.run_sentences import SENTENCES
@@ -40,10 +41,17 @@ RECORDED = frozenset({"recorded", "filled"})
 REFUSAL = "refusal"
 """The place for a clause within a clause."""
 
+REASONS = "reasons"
+"""The place for why a number of a text was taken: clauses that commas part."""
+
+ERRORS = "errors"
+"""The place for how far off the lines of a chart are, each with the name of its line."""
+
 MASSES_OF = frozenset({"kg", "kg/m2", "kg/m3"})
 """Units of masses, of an area and of a volume."""
 
 _SENTENCE = re.compile(r"(?<=[.!?]) ")
+_ERROR = re.compile(r"([\d.e+-]+) %|(?<=\()[^()]+")
 _PLACE = re.compile(r"\{(\w+)\}")
 _PRINTED = re.compile(r"\bTable (\d+)\b(?!-)")
 _TABLE = re.compile(r"(?P<file>\b[a-z_]+\.csv)(?:, (?P<row>\w[\w ]*\w))?")
@@ -80,6 +88,17 @@ def happening(text: str, units: Units) -> str:
         told.append(_told(*found, units))
         plain = []
     return " ".join([*told, said(" ".join(plain))] if plain else told)
+
+
+def pictured(text: str, units: Units) -> str:
+    """Say what stands on a chart or under it, as the run stored it: words, and behind them one phrase with numbers."""
+    parts = _SENTENCE.split(text)
+    for at in range(len(parts)):
+        rest = " ".join(parts[at:])
+        found = next(((one, places) for one in CHART_WORDS if (places := one.places(rest)) is not None), None)
+        if found is not None:
+            return " ".join([*([said(" ".join(parts[:at]))] if at else []), _told(*found, units)])
+    return said(text)
 
 
 def rejected(text: str, units: Units) -> str:
@@ -153,6 +172,10 @@ def _filled(name: str, found: str | Number, units: Units) -> str:
         return inches(found.si[0], up=False) if in_eighths else _number(found, units)
     if name in CITED:
         return found
+    if name == REASONS:
+        return ", ".join(_clause(one, units) for one in found.split(", "))
+    if name == ERRORS:
+        return _ERROR.sub(lambda one: f"{local(one[1])}\u00a0%" if one[1] else pictured(one[0], units), found)
     return _clause(found, units) if name == REFUSAL else _words(found)
 
 

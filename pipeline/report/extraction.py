@@ -22,7 +22,8 @@ from pipeline.mitigate.rows import STORED
 from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, ONLY_HERE, SIZED, UPPER_FIRST
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
-from pipeline.records import UNTOLD_ISOLATOR, Anchorage, Item, Support
+from pipeline.records import UNTOLD_ISOLATOR, Anchorage, ChartFigure, Item, Support
+from pipeline.records.chart_words import CHART_WORDS
 from pipeline.records.phrases import PHRASES
 from pipeline.records.run_sentences import SENTENCES
 from pipeline.report.assumed import SOURCES, TABLES
@@ -68,6 +69,10 @@ def run_phrases(
 def _of_models() -> Iterator[str]:
     for model in MODELS:
         yield from (model.title, model.sentence, model.at_most, model.gripped, model.fails, *model.says)
+        for one in model.pictures:
+            if isinstance(one, ChartFigure):
+                yield from (one.title, one.caption, one.x.label, one.y.label)
+    yield from (one.asked for one in CHART_WORDS)
     yield from NOTES.values()
     yield ON_TOP
 

@@ -9,6 +9,7 @@ from datetime import UTC, date, datetime
 import numpy as np
 
 from pipeline.analysis.classify import object_classes
+from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.inventory import items_named, object_numbers
 from pipeline.collection.record import digest_of
 from pipeline.mitigate.rows import Isolator
@@ -239,7 +240,7 @@ def _installed(workspace: Workspace, decision: Decision, words: Sequence[str]) -
         parameters[quantity.name] = value
     lost = [f"{key} ({q.meaning})" for key, q in wanted.items() if q.name not in parameters]
     if lost:
-        raise UsageError(f"{measure} needs {' and '.join(lost)}: write NAME=VALUE for each, in SI units")
+        raise UsageError(f"{measure} needs {' and '.join(lost)}: write NAME=VALUE for each, in SI units, or 4in")
     units = {q.name: q.unit for q in wanted.values()}
     return replace(decision, measure=measure, parameters=parameters, units=units, product=product)
 
@@ -250,7 +251,7 @@ def _named(words: Sequence[str], known: Sequence[str], measure: str) -> dict[str
     for word in words:
         name, equals, text = word.partition("=")
         if not equals:
-            raise UsageError(f"{word!r} is no parameter; write NAME=VALUE, as clearance_m=0.1")
+            raise UsageError(f"{word!r} is no parameter; write NAME=VALUE, as clearance_m=0.1 or clearance_m=4in")
         if _of(name, known, f"parameter of {measure}") in texts:
             raise UsageError(f"{name} is said twice; say it once")
         texts[name] = text.strip()
@@ -283,11 +284,22 @@ def _key(quantity: Quantity) -> str:
 
 def _number(quantity: Quantity, name: str, text: str) -> float:
     try:
-        value = float(text)
+        value = _in_si(text, quantity.unit)
         quantity.check(np.array([value]))
     except ValueError as problem:
         raise UsageError(f"{name}={text} cannot be: {name} must be {quantity.allowed()}") from problem
     return value
+
+
+def _in_si(text: str, unit: str) -> float:
+    """Return a number in SI; a length or a mass may name another unit, as on the sheets that people fill in."""
+    try:
+        return float(text)
+    except ValueError:
+        if unit not in ("m", "kg"):
+            raise
+    # Not 0.10160000000000001 for 4 in.
+    return float(f"{of_hand(text, unit).value:.12g}")
 
 
 # ---------------------------------------------------------------------------------------------------------------------

@@ -10,16 +10,15 @@ from pipeline.collection.errors import NoRowsError
 from pipeline.collection.inventory import Difference, add_sheet, object_numbers
 from pipeline.collection.inventory.local_measurements import filled_in
 from pipeline.collection.reading import Reading
-from pipeline.collection.sources.xlsx import visible_sheets
 from pipeline.errors import fault_words
 from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Decision
 from pipeline.report.files.marked_copy import CellFault, write_listed, write_marked
-from pipeline.report.files.survey_sheet import column_name, sheet_title
+from pipeline.report.files.survey_sheet import sheet_title
 from pipeline.tools.decision_answers import decision_rows, take_decisions
 from pipeline.tools.house_answers import add_rules, rules_of
-from pipeline.tools.survey import LENGTH_UNITS, read_sheet
+from pipeline.tools.survey import read_sheet, sheet_columns, sheet_length
 
 MARKED = "-refused"
 """What the name of the copy with refused cells has behind that of the workbook, or of a text of them."""
@@ -150,7 +149,7 @@ def _marked(path: Path, faults: Sequence[CellFault], folder: Path, *, dry_run: b
 
 def _faults(reading: Reading, path: Path, unknown: set[str]) -> list[CellFault]:
     """Return the cells of measurements that were refused."""
-    length = _length(path)
+    length, column_of = sheet_length(path), sheet_columns(path)
     sheet = sheet_title(length) if length else path.name
     out = [CellFault(sheet, one.line, one.field, _bare(one.message, path), one.remedy) for one in reading.rejected]
     for item, (_row, line) in zip(reading.items, reading.places, strict=True):
@@ -160,8 +159,7 @@ def _faults(reading: Reading, path: Path, unknown: set[str]) -> list[CellFault]:
         for one in item.problems:
             # Where it is, the sheet only shows.
             if one.field != "gallery":
-                column = column_name(one.field, length) if length else one.field
-                out.append(CellFault(sheet, line, column, one.message, one.remedy))
+                out.append(CellFault(sheet, line, column_of(one.field), one.message, one.remedy))
     return sorted(out, key=lambda fault: fault.row)
 
 
@@ -169,11 +167,3 @@ def _bare(message: str, path: Path) -> str:
     """Return what was said of a row without its place."""
     start, _, rest = message.partition("): ")
     return rest if rest and start.startswith(f"{path.name}, row ") else message
-
-
-def _length(path: Path) -> str:
-    """Return the unit of the lengths of a survey's workbook; "" of another file."""
-    if path.suffix.lower() != ".xlsx":
-        return ""
-    titles = visible_sheets(path)
-    return next((length for length in LENGTH_UNITS if sheet_title(length) in titles), "")

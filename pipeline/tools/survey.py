@@ -1,6 +1,6 @@
 """Survey workbook of what to measure first, to print, fill in and import again."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
@@ -18,6 +18,7 @@ from pipeline.collection.inventory import read_inventory
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
 from pipeline.collection.record import KINDS
+from pipeline.collection.sources.xlsx import first_rows, visible_sheets
 from pipeline.execute import Threads
 from pipeline.mitigate.installed import likely
 from pipeline.night.assessment import place
@@ -26,7 +27,7 @@ from pipeline.operations.workspace import Workspace
 from pipeline.records import Item, MeasurementRequest, Progress, Scene
 from pipeline.records.numerics import AUTO, CHART
 from pipeline.report.files.sheet_cells import HEADER_ROW
-from pipeline.report.files.survey_sheet import column_name, sheet_title, write_survey
+from pipeline.report.files.survey_sheet import MASS, column_name, mass_unit, sheet_title, write_survey
 from pipeline.store.decisions import decisions_in_force
 
 LENGTH_UNITS = ("cm", "mm", "m", "in", "ft")
@@ -156,26 +157,73 @@ def read_sheet(path: Path) -> Reading:
     CollectionError
         For a file that cannot be read, or a workbook without the survey's sheet.
     """
+    length = sheet_length(path)
+    if length:
+        return read_items(path, sheet_mapping(length, old_mass=_in_kilograms(path, length)))
+    if path.suffix.lower() == ".xlsx":
+        there = ", ".join(map(repr, visible_sheets(path)))
+        raise CollectionError(
+            f"{path.name}: no sheet of a survey, such as {sheet_title('cm')!r}; its sheets are {there}: give the "
+            "workbook that `kouros survey` wrote"
+        )
+    return read_items(path, _by_hand(load_mapping("kouros").model_dump(exclude_none=True, exclude_defaults=True)))
+
+
+def sheet_length(path: Path) -> str:
+    """Return the unit of the lengths of a survey's workbook.
+
+    Parameters
+    ----------
+    path : Path
+        A file that was filled in.
+
+    Returns
+    -------
+    str
+        "" for any other file.
+
+    Raises
+    ------
+    CollectionError
+        For a workbook that cannot be read.
+    """
     if path.suffix.lower() != ".xlsx":
-        return read_items(path, _by_hand(load_mapping("kouros").model_dump(exclude_none=True, exclude_defaults=True)))
-    fault: CollectionError | None = None
-    for length in LENGTH_UNITS:
-        try:
-            return read_items(path, sheet_mapping(length))
-        except CollectionError as problem:
-            if f"has no sheet {sheet_title(length)!r}" not in str(problem):
-                raise
-            fault = fault or problem
-    raise CollectionError(f"{path.name}: no sheet of a survey, such as {sheet_title('cm')!r}; {fault}")
+        return ""
+    titles = visible_sheets(path)
+    return next((length for length in LENGTH_UNITS if sheet_title(length) in titles), "")
 
 
-def sheet_mapping(length: str) -> Mapping:
+def sheet_columns(path: Path) -> Callable[[str], str]:
+    """Return what names the column of a field in a sheet that was filled in.
+
+    Parameters
+    ----------
+    path : Path
+        The sheet.
+    """
+    length = sheet_length(path)
+    if not length:
+        return str
+    old = _in_kilograms(path, length)
+    return lambda field: MASS if old and field == MASS else column_name(field, length)
+
+
+def _in_kilograms(path: Path, length: str) -> bool:
+    """Whether a sheet asks for kilograms by the name of the field, as all did once."""
+    heads = first_rows(path, sheet_title(length), HEADER_ROW)
+    names = heads[HEADER_ROW - 1] if len(heads) >= HEADER_ROW else []
+    return MASS in names and column_name(MASS, length) not in names
+
+
+def sheet_mapping(length: str, *, old_mass: bool = False) -> Mapping:
     """Return the mapping that reads a survey's sheet.
 
     Parameters
     ----------
     length : {"cm", "mm", "m", "in", "ft"}
         The unit of its lengths.
+    old_mass : bool
+        Whether it asks for kilograms, whatever its lengths are in.
 
     Returns
     -------
@@ -187,7 +235,10 @@ def sheet_mapping(length: str) -> Mapping:
     columns = {}
     for field, column in whole["columns"].items():
         unit = {"unit": length} if field.endswith("_m") else {}
-        columns[field] = column | {"column": column_name(field, length)} | unit
+        if field == MASS and not old_mass:
+            unit = {"unit": mass_unit(length)}
+        name = MASS if old_mass and field == MASS else column_name(field, length)
+        columns[field] = column | {"column": name} | unit
     return _by_hand(whole | {"columns": columns})
 
 

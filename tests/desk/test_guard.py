@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from base64 import b64encode
 from hashlib import sha384
 from pathlib import Path
@@ -127,6 +128,13 @@ def test_it_leads_nowhere_else_and_no_text_becomes_a_header(visitor: Visitor) ->
     got = visitor.post("/object/measured", number="1.1", who="A", following=away, **{"m.mass_kg": "3"}, **keys)
     assert got.headers["location"].startswith("/object?number=%2F%2Fevil.example%0")
     assert "x" not in got.headers
+
+
+def test_what_is_written_is_sent_at_once(museum: Path) -> None:
+    """asyncio tells a connection not to wait for more only where the socket that it came by names its protocol."""
+    _server, listening, _address = server_of(museum / "kouros.toml", None, 0)
+    with listening:
+        assert listening.proto == socket.IPPROTO_TCP
 
 
 def test_another_host_needs_somebody_known(museum: Path) -> None:

@@ -169,7 +169,9 @@ def test_a_mail_goes_out_and_its_subject_is_one_line() -> None:
     assert message["Subject"] == "Kouros: the run failed, Museum Bcc: everybody@museum.example"
     assert message["Bcc"] is None
     body, attached = message.iter_parts()
-    assert DOCUMENT["message"] in body.get_content()
+    first, second, *_rest = body.get_content().splitlines()
+    assert first == "THE NIGHT FAILED and brought no new report. Because:"
+    assert second == DOCUMENT["message"]
     assert json.loads(attached.get_content()) == DOCUMENT
 
 

@@ -19,13 +19,15 @@ from pipeline.records import (
     DecisionKind,
     NewsKind,
     ObjectChange,
+    Ruled,
     RunChanges,
     Settled,
     State,
     Verdict,
 )
 from pipeline.report import render
-from pipeline.report.pages.news import ON_A_PAGE, kept_view, news_line, news_view, sentences, to_do
+from pipeline.report.pages.news import KEPT, ON_A_PAGE, kept_view, news_line, news_view, sentences
+from pipeline.report.pages.news_words import to_do
 from pipeline.tables import table
 
 from . import builder
@@ -132,13 +134,31 @@ def test_a_thousand_pieces_of_news_are_on_pages(tmp_path: Path) -> None:
     assert sentences(changes(*objects), 5)[-1] == f"And {many - 5:,} objects more."
 
 
+def test_what_is_the_same_of_many_is_said_once_and_what_is_acted_on_one_by_one() -> None:
+    """Seven works that one house rule made fine, a decision behind them, and three that overturn now."""
+    rule = Ruled(True, "A.B.", "2031-05-12", ("framed",), ("Gallery 19",), {"hanging": "two_hooks"})
+    ruled = [ObjectChange(f"7.{n}", f"Sea {n}", "Gallery 19", WATCH, FINE, ruled=(rule,)) for n in range(7)]
+    decided = ObjectChange(
+        "8", "Bust", "East", ACT, ACT, decided=(Settled(True, "", "risk accepted", "A.B.", kind="accept"),)
+    )
+    worse = [ObjectChange(f"9.{n}", "Vase", "East", WATCH, ACT) for n in range(3)]
+    told = changes(*worse, *ruled, decided)
+    heads = [(len(group.lines), group.first.kind) for group in news_view(told, {}).brief]
+    assert heads == [(1, NewsKind.WORSE)] * 3 + [(7, NewsKind.BETTER), (1, NewsKind.DECIDED)]
+    said = sentences(told)
+    assert len(said) == 5
+    assert said[3].startswith("Better: 7.0 Sea 0, 7.1 Sea 1, 7.2 Sea 2, 7.3 Sea 3, 7.4 Sea 4 and 2 more: was to be")
+    assert said[3].count("A.B.") == 1
+
+
 def test_what_a_status_keeps_is_told_as_on_the_night() -> None:
     told = changes(*news_of_every_kind("x"), shared={"worse": 3, "fixed": 1})
     rows = json_ready(plain_changes(told)["objects"])
     kept = {"since": told.started, "counts": dict(Counter(row["kind"] for row in rows)), "because": [], "objects": rows,
             "shared": told.shared}  # fmt: skip
     view, whole = kept_view(kept), news_view(told, {})
-    assert view.lines == whole.lines[:8]
+    assert view.lines == whole.lines[:KEPT]
+    assert view.brief == whole.brief
     assert (view.total, view.shared, view.before) == (whole.total, whole.shared, whole.before)
     assert [row["text"] for row in rows] == [line.sentence for line in whole.lines]
 

@@ -27,7 +27,7 @@ from pipeline.report.files.concatenation import concatenate
 from pipeline.report.files.exports import OBJECT_COLUMNS, RANK, schema_of
 from pipeline.report.files.ranks import keys_part, ranks_of
 from pipeline.report.pages.compose import PERIODS
-from pipeline.report.pages.news import to_do
+from pipeline.report.pages.news_words import to_do
 from pipeline.report.pages.ranking import urgency
 from pipeline.report.pages.tallies import tally
 from pipeline.resources import resource

@@ -116,6 +116,7 @@ def finding(record: RunRecord, number: str, model: str) -> Finding:
         (Wish("1", KIND.INSTALLED, ["clearance", "room=1"], why="x"), r"no parameter of clearance 'room'"),
         (Wish("1", KIND.INSTALLED, ["clearance", "clearance_m=nan"], why="x"), r"must be a finite number at least 0"),
         (Wish("1", KIND.INSTALLED, ["clearance", "clearance_m=-1"], why="x"), r"must be a finite number at least 0"),
+        (Wish("1", KIND.INSTALLED, ["clearance", "clearance_m=3 lb"], why="x"), r"must be a finite number at least 0"),
         (Wish("1", KIND.WITHDRAW, ["7"], why="x"), r"no decision '7' to withdraw; it has none"),
     ],
 )
@@ -123,6 +124,14 @@ def test_what_cannot_be_is_refused_with_what_can(ran: Path, wish: Wish, message:
     with pytest.raises(UsageError, match=message):
         decide(opened(ran), replace(wish, who=wish.who or "Ann"))
     assert read_decisions(opened(ran).engine) == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "metres"), [("0.1", 0.1), ("4in", 0.1016), ("4 1/2 in", 0.1143), ("10 cm", 0.1), ('4"', 0.1016)]
+)
+def test_a_length_may_name_its_unit(museum: Path, text: str, metres: float) -> None:
+    made = say(museum, "1", KIND.INSTALLED, "clearance", f"clearance_m={text}")
+    assert made.parameters == {"clearance": metres}
 
 
 def test_who_comes_from_the_environment_and_is_never_empty(museum: Path, monkeypatch: pytest.MonkeyPatch) -> None:

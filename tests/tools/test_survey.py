@@ -170,6 +170,42 @@ def test_lengths_are_read_in_the_unit_of_the_sheet(tmp_path: Path) -> None:
     assert item.clearance_m == 0.254
 
 
+@pytest.mark.parametrize(
+    ("length", "column", "cell", "kilograms"),
+    [
+        ("in", "mass [lb]", "10", 4.5359237),
+        ("ft", "mass [lb]", "10 1/2", 4.762719885),
+        ("in", "mass [lb]", "4 kg", 4.0),
+        ("in", "mass [lb]", "2 lb 8 oz", 1.133980925),
+        ("cm", "mass_kg", "10", 10.0),
+        ("cm", "mass_kg", "10 lb", 4.5359237),
+        # As workbooks were written before they asked for pounds.
+        ("in", "mass_kg", "10", 10.0),
+    ],
+)
+def test_masses_are_in_pounds_beside_inches(
+    length: str, column: str, cell: str, kilograms: float, tmp_path: Path
+) -> None:
+    assert length == "cm" or column_name("mass_kg", length) == "mass [lb]"
+    book = openpyxl.Workbook()
+    sheet = book.create_sheet(sheet_title(length))
+    sheet.append(["Object", "Gallery", "Mass"])
+    sheet.append(["object_number", "gallery", column])
+    sheet.append(["1", "East", cell])
+    book.save(tmp_path / "survey.xlsx")
+    (item,) = read_sheet(tmp_path / "survey.xlsx").items
+    assert (item.mass_kg, item.problems) == (pytest.approx(kilograms), ())
+
+
+def test_what_a_mass_is_taken_as_is_told_in_the_unit_that_is_asked_for(tmp_path: Path) -> None:
+    asked = MeasurementRequest("1", "East", "Box", "mass_kg", "kg", 4.5359237, 6.0, 9.0718474, "", 1, 0.5, 0)
+    write_survey(tmp_path / "s.xlsx", [asked], measurables(), length="in")
+    sheet = openpyxl.load_workbook(tmp_path / "s.xlsx")[sheet_title("in")]
+    labels, names, row = ([cell.value for cell in line] for line in sheet.iter_rows(min_row=1, max_row=3))
+    assert ("Mass (lb)", "mass [lb]") in zip(labels, names, strict=True)
+    assert "taken as 10 to 20 lb now" in row[-1]
+
+
 def test_a_workbook_that_is_no_survey_is_refused(tmp_path: Path) -> None:
     openpyxl.Workbook().save(tmp_path / "other.xlsx")
     with pytest.raises(CollectionError, match=r"other\.xlsx: no sheet of a survey, such as 'survey in cm'"):

@@ -24,8 +24,9 @@ _STATED = {
     "frequency_hz": "frequency_hz",
     "support": "held",
     "hanging": "hanging",
+    "mount": "mount",
 }
-"""Field that a survey asks for -> what a rule would state in its place: lengths of many objects as shares."""
+"""Field that a survey asks for, or what is looked at -> what a rule would state instead: lengths of many as shares."""
 
 _SHARE_OF = {"cg_ratio": "height_m", "suspension_ratio": "height_m", "base_ratio": "width_m"}
 

@@ -111,6 +111,10 @@ def current() -> ColumnElement[bool]:
 
 def numbered(numbers: Sequence[str]) -> Iterator[ColumnElement[bool]]:
     """Yield which rows of ITEM are of some objects, for one statement after the other."""
+    if len(numbers) == 1:
+        # What is asked most, and compiled once.
+        yield ITEM.c.object_number == numbers[0]
+        return
     for start in range(0, len(numbers), NAMED):
         yield ITEM.c.object_number.in_(numbers[start : start + NAMED])
 

@@ -28,7 +28,7 @@ _ROWS = 60
 _LABELS = {
     "object_number": "Object",
     "decision": "Decision",
-    "what": "What: the measure with NAME=VALUE in SI units, the class, or the id",
+    "what": "What: the measure with NAME=VALUE (4in, 10cm, 3lb; else SI), the class, or the id",
     "model": "Only this model",
     "level": "Only this level",
     "until": "Until (2031-05-01)",

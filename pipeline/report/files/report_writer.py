@@ -45,7 +45,7 @@ from pipeline.report.pages.compose import anchor_of, museum_view, page_head, pag
 from pipeline.report.pages.environment import environment, fill, script_of
 from pipeline.report.pages.errand_views import plan_page
 from pipeline.report.pages.further import further_pages
-from pipeline.report.pages.news import OPEN, news_pages, news_view, page_file
+from pipeline.report.pages.news import news_pages, news_view, page_file
 from pipeline.report.pages.reading import (
     IMAGES,
     INVENTORY,
@@ -312,7 +312,7 @@ class ReportWriter:
             return key
         table, language = f"{READING}.csv", self.renderer.language
         with speaking(language):
-            listed = write_doubts(self._partial / table, doubts())
+            listed = write_doubts(self._partial / table, doubts(), self.renderer.units)
             self._files[table] = sum_of(self._partial / table)
             shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
             context: dict[str, Any] = {"museum": shown, "reading": reading_view(head.settings), "listed": listed}
@@ -362,7 +362,7 @@ class ReportWriter:
             hashes = [motion.hash[:16] for motion in head.motions]
             measured = drawn([key for key in drawings if not any(h in key for h in hashes)], drawings)
             return [
-                ("index.html", fill(env, "index.html", told | {"here": "index", "left_out": left_out, "open": OPEN})),
+                ("index.html", fill(env, "index.html", told | {"here": "index", "left_out": left_out})),
                 *(
                     (file, fill(env, "news.html", told | {"here": "news", "lines": lines, "number": number}))
                     for number, (file, lines) in enumerate(zip(told["files"], listed, strict=True), 1)

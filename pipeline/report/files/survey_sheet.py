@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 from pipeline.collection.record import CHOICES
 from pipeline.models import MODELS
-from pipeline.quantities import LENGTHS
+from pipeline.quantities import LENGTHS, MASSES
 from pipeline.records import MeasurementRequest
 from pipeline.report.files.decisions_sheet import DECISIONS_SHEET, write_decisions
 from pipeline.report.files.rules_sheet import RULES_SHEET, write_rules
 from pipeline.report.files.sheet_cells import HEADER_ROW, choice_of, headed, to_fill_in, write_cell
 from pipeline.report.files.workbook import saved
+from pipeline.report.units import Units
 from pipeline.resources import replacing
 
 if TYPE_CHECKING:
@@ -27,6 +28,9 @@ SHOWN = ("object_number", "gallery", "title")
 
 WHY = "why"
 
+MASS = "mass_kg"
+"""The field of masses; so its column was called, whatever the lengths, before it named pounds."""
+
 
 def sheet_title(length: str) -> str:
     """Return the name of the sheet to fill in; it says the unit of all its lengths."""
@@ -34,8 +38,15 @@ def sheet_title(length: str) -> str:
 
 
 def column_name(field: str, length: str) -> str:
-    """Return the name of a field's column: lengths name their unit, the others are the fields themselves."""
+    """Return the name of a field's column: lengths and pounds name their unit, the others are the fields themselves."""
+    if field == MASS and mass_unit(length) != "kg":
+        return f"mass [{mass_unit(length)}]"
     return f"{field.removesuffix('_m')} [{length}]" if field.endswith("_m") else field
+
+
+def mass_unit(length: str) -> str:
+    """Return the unit of masses where lengths are in that unit: pounds beside inches and feet."""
+    return Units(length).symbol("kg")
 
 
 def write_survey(
@@ -138,8 +149,17 @@ def _how(sheet: Worksheet, fields: Sequence[Measurable], length: str) -> None:
 
 
 def _labelled(m: Measurable, length: str) -> str:
-    unit = length if m.unit == "m" else m.unit
-    return m.label if unit in ("", "-") else f"{m.label} ({unit})"
+    unit, _per = _cell_unit(m.unit, length)
+    return f"{m.label} ({unit})" if unit else m.label
+
+
+def _cell_unit(unit: str, length: str) -> tuple[str, float]:
+    """Return the unit of a cell to fill in, "" for a ratio, and what a number in it is multiplied by to be in SI."""
+    if unit == "m":
+        return length, LENGTHS[length]
+    if unit == "kg":
+        return mass_unit(length), MASSES[mass_unit(length)]
+    return "" if unit == "-" else unit, 1.0
 
 
 def _reason(request: MeasurementRequest, length: str) -> str:
@@ -147,8 +167,7 @@ def _reason(request: MeasurementRequest, length: str) -> str:
         return f"{column_name(request.field, length)}: {request.reason}, without it nothing can be said"
     span = ""
     if request.low is not None and request.high is not None:
-        per = LENGTHS[length] if request.unit == "m" else 1.0
-        unit = length if request.unit == "m" else "" if request.unit == "-" else request.unit
+        unit, per = _cell_unit(request.unit, length)
         span = f"{request.low / per:.3g} to {request.high / per:.3g} {unit}".strip()
         span = f", taken as {span} now"
     if request.drawn:

@@ -18,6 +18,9 @@ ACTED = (Band.ALMOST_CERTAIN, Band.LIKELY, Band.POSSIBLE)
 _RATHER = (Band.ALMOST_CERTAIN, Band.LIKELY)
 """Words for what rather happens than not."""
 
+MOUNT = "mount"
+"""What is asked where nobody recorded how a mount holds an object."""
+
 _LOST = (Harm.FALLS, Harm.BREAKS)
 """What no repair undoes."""
 
@@ -115,7 +118,7 @@ def _asked(assessment: Assessment) -> str:
     parameter, scene = open_for(assessment), assessment.scene
     if parameter == CLASS:
         return _("Say what it is.")
-    if parameter == "friction_static" and scene.mount is Mount.UNKNOWN:
+    if parameter == MOUNT:
         return _("Say whether its mount holds it by clips, wire or screws, or only carries it.")
     return _("Measure: %(what)s") % {"what": name_of(size_behind(scene, parameter) or parameter)} if parameter else ""
 
@@ -146,9 +149,11 @@ def _percent(probability: float) -> str:
 
 
 def open_for(assessment: Assessment) -> str:
-    """Return the parameter whose measurement alone may change what is decided about an object; "" for none."""
+    """Return what alone may change what is decided about an object: a parameter, CLASS or MOUNT; "" for nothing."""
     found = assessment.likelihood
-    return "" if found is None else found.open_for
+    parameter = "" if found is None else found.open_for
+    # Nobody measures the friction of what a mount carries: how that grips is looked at.
+    return MOUNT if parameter == "friction_static" and assessment.scene.mount is Mount.UNKNOWN else parameter
 
 
 def chance_columns(assessment: Assessment) -> dict[str, str | float | None]:
@@ -180,7 +185,11 @@ def _measured() -> dict[str, str]:
 
 
 def name_of(parameter: str) -> str:
-    """Say what one would measure to know a parameter."""
+    """Say what one would measure, or look at, to know a parameter, CLASS or MOUNT."""
+    if parameter == CLASS:
+        return _("What it is")
+    if parameter == MOUNT:
+        return _("How its mount holds it")
     return said(_measured()[parameter]) if parameter in _measured() else words(parameter)
 
 

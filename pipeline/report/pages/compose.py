@@ -183,7 +183,7 @@ def pointer(view: ObjectView) -> Pointer:
         gallery=view.gallery,
         state=view.state,
         lead=None if view.lead is None else Lead(view.lead.title, view.lead.outcome),
-        measure=view.measures[0].plain if view.measures else "",
+        measure=view.measures[0].brief if view.measures else "",
         chance=view.chance,
     )
 

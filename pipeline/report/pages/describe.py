@@ -36,7 +36,7 @@ from pipeline.report.pages.alike import Memory, finding_key
 from pipeline.report.pages.chances import chance_view, left_over, open_for, worth_words
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
-from pipeline.report.pages.plainly import full_measure, plain_measure
+from pipeline.report.pages.plainly import brief_measure, dangers, full_measure, plain_measure
 from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of, urgency
 from pipeline.report.pages.survey_words import missing_words, wish_views
 from pipeline.report.pages.views import (
@@ -131,7 +131,7 @@ def held(scene: Scene) -> str:
         Mount.LEANING: _("leans on a stand or against a backing"),
         Mount.RESTING: _("rests on its mount, held by nothing else"),
         Mount.SECURED: _("held on its mount"),
-        Mount.UNKNOWN: _("on a mount; how that grips is not recorded"),
+        Mount.UNKNOWN: _("on a mount that nobody described"),
     }
     return support(scene.support) if scene.mount is None else ways[scene.mount]
 
@@ -236,8 +236,7 @@ class Sayings:
             "low": (f.low, f.unit),
             "high": (f.high, f.unit),
         }
-        where = f"object {f.object_number}, finding {f.model}"
-        utilisation = percent(f.utilisation)
+        where, utilisation = f"object {f.object_number}, finding {f.model}", percent(f.utilisation)
         return FindingView(
             title=said(clean(f.title)),
             level=clean(f.level),
@@ -405,6 +404,7 @@ class Describer:
             skipped=tuple(f"{words(clean(model))}: {said(clean(why))}" for model, why in scene.skipped.items()),
             decisions=self.decided.of(assessment),
             settled=self.decided.covered(assessment),
+            dangers=dangers(ordered),
         )
 
     def _measures(self, assessment: Assessment) -> tuple[MeasureView, ...]:
@@ -425,6 +425,7 @@ class Describer:
         return MeasureView(
             measure=clean(r.measure),
             named=NAMED_FIRST in r.sentence,
+            brief=brief_measure(r, self._units),
             title=said(clean(r.title)),
             level=clean(r.level),
             plain=plain_measure(r, self._units) + left_over(r),

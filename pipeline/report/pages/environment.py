@@ -4,10 +4,12 @@ import hashlib
 from base64 import b64encode
 from collections.abc import Callable, Hashable, Mapping
 from functools import cache, lru_cache
+from gettext import NullTranslations
 from typing import Any
 
-from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined
+from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined, nodes
 from jinja2.bccache import Bucket
+from jinja2.visitor import NodeTransformer
 from markupsafe import Markup
 
 from pipeline.report.errors import ReportError
@@ -17,7 +19,7 @@ from pipeline.resources import resource
 
 
 class _Compiled(BytecodeCache):
-    """The templates as they were compiled, once a process: a night asks for several environments of the same ones."""
+    """The templates of a language as they were compiled: a night asks for several environments of the same ones."""
 
     def __init__(self) -> None:
         self._code: dict[str, bytes] = {}
@@ -32,17 +34,49 @@ class _Compiled(BytecodeCache):
         self._code[bucket.key] = bucket.bytecode_to_string()
 
 
-_COMPILED = _Compiled()
+@cache
+def _compiled(_digest: str) -> _Compiled:
+    """Return what keeps the templates in a language, by the digest of its catalogues."""
+    return _Compiled()
+
+
+class _Told(NodeTransformer):
+    """Puts the phrases of a language into a template in place of what looks them up each time a page is filled in."""
+
+    def __init__(self, phrases: NullTranslations) -> None:
+        self._phrases = phrases
+
+    def visit_Call(self, node: nodes.Call) -> nodes.Node:  # noqa: N802 - as jinja2 calls it
+        """Put a phrase in place of ``_("phrase")``."""
+        self.generic_visit(node)
+        match node:
+            case nodes.Call(node=nodes.Name(name="_"), args=[nodes.Const(value=str(phrase))], kwargs=[]):
+                return nodes.TemplateData(self._phrases.gettext(phrase), lineno=node.lineno)
+        return node
+
+
+class _Spoken(Environment):
+    """An environment whose templates are compiled with the phrases of a language."""
+
+    spoken = Language()
+
+    def _parse(self, source: str, name: str | None, filename: str | None) -> nodes.Template:
+        tree = super()._parse(source, name, filename)
+        told: nodes.Template = _Told(self.spoken.phrases).visit(tree)
+        return told
 
 
 def environment(language: Language | None = None) -> Environment:
     """Return the templates' environment: everything escaped, nothing undefined, phrases in the language."""
-    env = Environment(
+    spoken = language or Language()
+    phrases = spoken.phrases
+    shared = bool(spoken.digest) or type(phrases) is NullTranslations
+    env = _Spoken(
         loader=FileSystemLoader(resource("templates")),
         autoescape=True,
         # Templates do not change while a report is written: nobody need look.
         auto_reload=False,
-        bytecode_cache=_COMPILED,
+        bytecode_cache=_compiled(spoken.digest) if shared else None,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -50,10 +84,9 @@ def environment(language: Language | None = None) -> Environment:
         extensions=["jinja2.ext.i18n"],
         finalize=_present,
     )
-    spoken = language or Language()
-    phrases = spoken.phrases
+    env.spoken = spoken
     env.install_gettext_translations(phrases, newstyle=True)  # type: ignore[attr-defined]
-    # The pages ask for the same few phrases a hundred thousand times.
+    # What is looked up while a page is filled in: phrases that a template computes.
     env.globals["_"] = lru_cache(maxsize=1024)(lambda text: Markup(phrases.gettext(text)))  # noqa: S704
     env.globals["language"] = spoken
     env.filters["plain"] = plain

@@ -9,9 +9,13 @@ from pipeline.records import Band, Brief, DecisionKind, NewsKind, ObjectChange, 
 from pipeline.report.language import _, moment, ngettext, parted, said
 from pipeline.report.pages.chances import band_word, class_title
 from pipeline.report.pages.house_words import stated_told, word_told
+from pipeline.report.pages.news_words import TITLE, to_do, was_done
 from pipeline.report.pages.survey_words import missing_words
 from pipeline.report.pages.views import Pointer
 from pipeline.report.text import clean, count, plain, short, words
+
+KEPT = 100
+"""Objects with news that a status keeps."""
 
 OPEN = 8
 """Lines that the index and the landing page show; the page of the news has all."""
@@ -21,7 +25,15 @@ ON_A_PAGE = 500
 
 STEM = "news"
 
-_TITLE = 80
+ALIKE = 3
+"""Objects from which on the same news of them is one line."""
+
+NAMED = 5
+"""Objects that such a line names."""
+
+_ONE_BY_ONE = frozenset({NewsKind.DANGER, NewsKind.WORSE, NewsKind.LOST, NewsKind.STILL})
+"""News that somebody acts on."""
+
 _FIELDS = 3
 
 
@@ -57,7 +69,11 @@ class NewsLine:
     @property
     def sentence(self) -> str:
         """The line as a sentence, with who said what was done, for places without markup."""
-        begun = f"{self.head}: {self.number} {self.title}".rstrip()
+        return self.told_of(f"{self.number} {self.title}".rstrip())
+
+    def told_of(self, named: str) -> str:
+        """Return the line as a sentence about what is named."""
+        begun = f"{self.head}: {named}"
         if not self.by:
             return plain(begun + self.ended)
         whole = parted((begun + self.text.removesuffix("."), self.by))
@@ -67,6 +83,53 @@ class NewsLine:
     def ended(self) -> str:
         """The text with its full stop: one, where it ends in somebody's initials."""
         return self.text if self.text.endswith(".") else f"{self.text}."
+
+
+@dataclass(frozen=True, slots=True)
+class NewsGroup:
+    """News that is the same of its objects, or news of one."""
+
+    lines: tuple[NewsLine, ...]
+
+    @property
+    def named(self) -> tuple[NewsLine, ...]:
+        """The objects that are named."""
+        return self.lines[:NAMED]
+
+    @property
+    def first(self) -> NewsLine:
+        """What is said of the first object, which is said of all."""
+        return self.lines[0]
+
+    @property
+    def gallery(self) -> str:
+        """Where they all are; "" where not all are in one."""
+        return self.first.gallery if len({line.gallery for line in self.lines}) == 1 else ""
+
+    @property
+    def more(self) -> str:
+        """How many are not named; "" for none."""
+        left = len(self.lines) - len(self.named)
+        return _("and %(more)s more") % {"more": count(left)} if left else ""
+
+    @property
+    def sentence(self) -> str:
+        """The news in a sentence, for places without markup."""
+        others = [f"{line.number} {line.title}".rstrip() for line in self.named[1:]]
+        named = ", ".join((f"{self.first.number} {self.first.title}".rstrip(), *others))
+        return self.first.told_of(" ".join(filter(None, (named, self.more))))
+
+
+def together(lines: Sequence[NewsLine]) -> tuple[NewsGroup, ...]:
+    """Return news with what is the same of several objects together, in the order of the first of them."""
+    alike: dict[object, list[NewsLine]] = {}
+    for at, line in enumerate(lines):
+        apart = at if line.kind in _ONE_BY_ONE else ""
+        alike.setdefault((line.kind, line.text, line.by, apart), []).append(line)
+    found: list[NewsGroup] = []
+    for some in alike.values():
+        found += [NewsGroup(tuple(some))] if len(some) >= ALIKE else [NewsGroup((line,)) for line in some]
+    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,9 +163,14 @@ class NewsView:
     changed: bool = True
 
     @property
+    def brief(self) -> "tuple[NewsGroup, ...]":
+        """The first of the news, what is alike together."""
+        return together(self.lines)[:OPEN]
+
+    @property
     def more(self) -> int:
-        """How many lines are not here."""
-        return self.total - len(self.lines)
+        """How many objects the first of the news do not name."""
+        return self.total - sum(len(group.named) for group in self.brief)
 
 
 def news_view(changes: RunChanges, objects: Mapping[str, Pointer]) -> NewsView:
@@ -137,7 +205,7 @@ def kept_view(kept: Mapping[str, Any]) -> NewsView:
     counts = {NewsKind(kind): int(number) for kind, number in kept["counts"].items()}
     return NewsView(
         before=clean(str(kept["since"])),
-        lines=tuple(news_line(_of_row(row)) for row in kept["objects"][:OPEN]),
+        lines=tuple(news_line(_of_row(row)) for row in kept["objects"][:KEPT]),
         total=sum(counts.values()),
         counts=told_counts(counts),
         shared=told_counts(kept["shared"]),
@@ -162,8 +230,9 @@ def _of_row(row: Mapping[str, Any]) -> ObjectChange:
 
 def sentences(changes: RunChanges, most: int = OPEN) -> list[str]:
     """Return the news in sentences: the first lines, how many more there are, and what changed for many at once."""
-    told = [news_line(one).sentence for one in changes.objects[:most]]
-    more = len(changes.objects) - len(told)
+    shown = together([news_line(one) for one in changes.objects])[:most]
+    told = [group.sentence for group in shown]
+    more = len(changes.objects) - sum(len(group.lines) for group in shown)
     if more:
         told.append(
             ngettext("And %(shown)s object more.", "And %(shown)s objects more.", more) % {"shown": count(more)}
@@ -242,8 +311,8 @@ def news_line(one: ObjectChange, view: Pointer | None = None) -> NewsLine:
         kind,
         _head(kind),
         clean(one.object_number),
-        short(one.title, _TITLE),
-        short(one.gallery, _TITLE) or _("no gallery recorded"),
+        short(one.title, TITLE),
+        short(one.gallery, TITLE) or _("no gallery recorded"),
         view,
         _text(kind, one),
         _by(one),
@@ -325,7 +394,7 @@ def _missing(brief: Brief) -> str:
 
 
 def _moved(one: ObjectChange) -> str:
-    before, after = (short(name, _TITLE) or _("no gallery recorded") for name in (one.came_from or "", one.gallery))
+    before, after = (short(name, TITLE) or _("no gallery recorded") for name in (one.came_from or "", one.gallery))
     return ": " + _("from %(before)s to %(after)s") % {"before": before, "after": after}
 
 
@@ -349,10 +418,10 @@ def _matter(one: Settled) -> str:
 
 def _why(one: ObjectChange) -> str:
     """Say what was done about it, or else what changed of its record; "" where neither is known."""
-    done = dict.fromkeys(_done(measure) for measure in one.installed)
+    done = dict.fromkeys(was_done(measure) for measure in one.installed)
     # What is recorded anew with other numbers ends and begins.
     ended = [d.measure for d in one.decided if not d.new and d.measure and d.measure not in one.installed]
-    told = [*done, *(_("no longer %(done)s") % {"done": _done(measure)} for measure in dict.fromkeys(ended))]
+    told = [*done, *(_("no longer %(done)s") % {"done": was_done(measure)} for measure in dict.fromkeys(ended))]
     if not told and one.decided:
         told = [_decided(one)]
     if not told and one.came_from is not None:
@@ -386,7 +455,7 @@ def _rule(one: Ruled) -> str:
         for name, word in one.states.items()
     )
     told = phrase % {
-        "whom": short(whom, _TITLE),
+        "whom": short(whom, TITLE),
         "what": short(what, 120),
         "who": short(one.who, 60),
         "date": moment(clean(one.date)),
@@ -396,50 +465,3 @@ def _rule(one: Ruled) -> str:
     who, when, why = one.back
     ended = {"who": short(who, 60), "date": moment(clean(when)), "why": short(why, 120)}
     return ", ".join((told, _("taken back by %(who)s, %(date)s: %(why)s") % ended))
-
-
-def to_do(brief: Brief) -> str:
-    """Say what to do about an object, in words that follow a colon."""
-    if brief.check:
-        # What is advised for sizes that nobody believes is not built.
-        return _("check its sizes first")
-    if not brief.measure:
-        return _("ask an engineer")
-    known = _WORDS.get(brief.measure)
-    return said(short(brief.advice, _TITLE)) if known is None else known[0]()
-
-
-def _done(measure: str) -> str:
-    known = _WORDS.get(measure)
-    return words(clean(measure)) if known is None else known[1]()
-
-
-# By row of tables/measures.csv, what to do and what was done; looked up in the language of the page.  The museum's own
-# measures are told by their titles.
-_WORDS = {
-    "clearance": (lambda: _("keep it clear"), lambda: _("kept clear")),
-    "anchor": (lambda: _("fasten its furniture"), lambda: _("its furniture fastened")),
-    "rubber_pads": (lambda: _("put rubber pads behind it"), lambda: _("rubber pads behind it")),
-    "surface": (lambda: _("stand it on another surface"), lambda: _("on another surface")),
-    "grip_pad": (lambda: _("stand it on a non-slip pad"), lambda: _("on a non-slip pad")),
-    "pins": (lambda: _("set padded pins round its foot"), lambda: _("held by pins")),
-    "wax": (lambda: _("fix it with wax"), lambda: _("fixed with wax")),
-    "putty": (lambda: _("fix it with putty"), lambda: _("fixed with putty")),
-    "ties": (lambda: _("tie it down"), lambda: _("tied down")),
-    "clips": (lambda: _("hold its foot by clips"), lambda: _("held by clips")),
-    "ballast": (lambda: _("put ballast into its base"), lambda: _("ballast in its base")),
-    "wide_base": (lambda: _("give it a wider base"), lambda: _("on a wider base")),
-    "brackets": (lambda: _("fix it to the wall by brackets"), lambda: _("held by brackets")),
-    "clamps": (lambda: _("clamp it"), lambda: _("clamped")),
-    "fasten": (lambda: _("fasten it"), lambda: _("fastened")),
-    "brace": (lambda: _("brace it"), lambda: _("braced")),
-    "close_hooks": (lambda: _("close its hooks"), lambda: _("its hooks closed")),
-    "hold": (lambda: _("hold it on its mount"), lambda: _("held on its mount")),
-    "restrain": (lambda: _("fix it to the wall"), lambda: _("fixed to the wall")),
-    "stays": (lambda: _("stay it to all sides"), lambda: _("stayed to all sides")),
-    "friction_isolator": (lambda: _("stand it on a low-friction pad"), lambda: _("on a low-friction pad")),
-    "horizontal_isolator": (lambda: _("put it on a horizontal isolator"), lambda: _("on a horizontal isolator")),
-    "rotational_isolator": (lambda: _("mount it on a rotational isolator"), lambda: _("on a rotational isolator")),
-    "strengthen": (lambda: _("have it strengthened and fastened"), lambda: _("strengthened and fastened")),
-    "remove": (lambda: _("take it off display"), lambda: _("taken off display")),
-}

@@ -3,13 +3,15 @@
 The full sentence of a measure, with the moment, the margin and the friction, stays in the folded part of an entry.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, SIZED, UPPER_FIRST
-from pipeline.records import Recommendation
+from pipeline.records import Finding, Recommendation
 from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
+from pipeline.report.pages.ranking import finding_state
+from pipeline.report.pages.views import Judged
 from pipeline.report.text import clean
 from pipeline.report.units import Units
 
@@ -39,28 +41,12 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     str
         Of a measure that is not known here, as one of another package, its title.
     """
-    write = by_hand(units)
-    numbers = {name: write(name, value, advice.units.get(name, "")) for name, value in advice.parameters.items()}
-    told = [_("First have what it stands in fastened.")] if advice.sentence.startswith(ANCHORED) else []
-    if HELD_FIRST in advice.sentence:
-        told.append(_("First record what holds it now as installed."))
-    if UPPER_FIRST in advice.sentence:
-        told.append(_("First fix the upper body to the one that it stands on."))
-    phrase = _PHRASES[advice.measure]() if advice.measure in _PHRASES else ""
-    try:
-        told.append(phrase % numbers if phrase else f"{said(clean(advice.title))}.")
-    except KeyError:
-        # Results of another version may lack a number: its title is true in any case.
-        told.append(f"{said(clean(advice.title))}.")
+    told, numbers = _advised(advice, units)
     if OF_MEAN in advice.sentence:
         told.append(_("That is for the mean of the earthquakes: in the worst of them it moves %(worst)s.") % numbers)
     if HEAVIEST in advice.sentence:
-        told.append(
-            _("That is for a weight of %(heaviest)s, the most that it may have; by the best estimate it is %(weight)s.")
-            % numbers
-        )
-        if AT_BEST not in advice.sentence:
-            told.append(_("Weigh it first: if it is lighter, the mount may be lighter in proportion."))
+        heaviest = _("That is for %(heaviest)s, the most that it may weigh; %(weight)s is likelier.") % numbers
+        told.append(heaviest if AT_BEST in advice.sentence else f"{_('Weigh it first.')} {heaviest}")
     if NAMED_FIRST in advice.sentence:
         told.append(_("Before that, say what it is: for another kind of object this may not be enough."))
     if AT_BEST in advice.sentence:
@@ -73,6 +59,40 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     elif SIZED in advice.sentence:
         told.append(_("Weigh it and measure its base first."))
     return " ".join(told)
+
+
+def brief_measure(advice: Recommendation, units: Units) -> str:
+    """Return what is advised as a list of many objects says it: what to do, and what to find out before.
+
+    Parameters
+    ----------
+    advice, units
+        As of `plain_measure`.
+    """
+    told, _numbers = _advised(advice, units)
+    if NAMED_FIRST in advice.sentence:
+        told.append(_("Before that, say what it is."))
+    elif any(one in advice.sentence for one in (HEAVIEST, AT_BEST, SIZED)):
+        told.append(_("Weigh it first."))
+    return " ".join(told)
+
+
+def _advised(advice: Recommendation, units: Units) -> tuple[list[str], dict[str, str]]:
+    """Return the sentences of what is done, and the numbers of the measure as people write them."""
+    write = by_hand(units)
+    numbers = {name: write(name, value, advice.units.get(name, "")) for name, value in advice.parameters.items()}
+    told = [_("First have what it stands in fastened.")] if ANCHORED in advice.sentence else []
+    if HELD_FIRST in advice.sentence:
+        told.append(_("First record what holds it now as installed."))
+    if UPPER_FIRST in advice.sentence:
+        told.append(_("First fix the upper body to the one that it stands on."))
+    phrase = _PHRASES[advice.measure]() if advice.measure in _PHRASES else ""
+    try:
+        told.append(phrase % numbers if phrase else f"{said(clean(advice.title))}.")
+    except KeyError:
+        # Results of another version may lack a number: its title is true in any case.
+        told.append(f"{said(clean(advice.title))}.")
+    return told, numbers
 
 
 # Looked up in the language of the page.
@@ -113,4 +133,35 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
     "rotational_isolator": lambda: _("Have it mounted on an elastic pad."),
     "strengthen": lambda: _("Have its weakest part strengthened, and its base fastened to hold %(force)s sideways."),
     "remove": lambda: _("Take it off display, or have an engineer design its mount."),
+}
+
+
+def dangers(findings: Iterable[Finding]) -> str:
+    """Say what an object may do by what it does not pass: "It may tip over, slide or break."; "" for nothing.
+
+    findings : of the object, the most urgent first; one of a model of another package is told by its title
+    """
+    failing = [f for f in findings if finding_state(f) is not Judged.PASSES]
+    if any(f.model not in _DANGERS for f in failing):
+        return ", ".join(dict.fromkeys(said(clean(f.title)) for f in failing)) + "."
+    told = list(dict.fromkeys(_DANGERS[f.model]() for f in failing))
+    several = _(" or ").join(filter(None, (", ".join(told[:-1]), *told[-1:])))
+    return _("It may %(dangers)s.") % {"dangers": several} if told else ""
+
+
+# Looked up in the language of the page.
+_DANGERS: Mapping[str, Callable[[], str]] = {
+    "standing": lambda: _("tip over"),
+    "rocking": lambda: _("rock too far"),
+    "sliding": lambda: _("slide too far"),
+    "stress": lambda: _("break at its weakest part"),
+    "flexible_stress": lambda: _("break at its weakest part"),
+    "swing": lambda: _("swing too far"),
+    "swing_3d": lambda: _("swing too far"),
+    "unhooking": lambda: _("jump off its hooks"),
+    "hanger_load": lambda: _("tear its hangers out"),
+    "unanchored": lambda: _("fall with what it stands in"),
+    "friction_isolator": lambda: _("need more room than its isolator has"),
+    "horizontal_isolator": lambda: _("need more room than its isolator has"),
+    "rotational_isolator": lambda: _("ask more of its isolator than that can give"),
 }

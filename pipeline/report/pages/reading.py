@@ -11,8 +11,10 @@ from typing import Any
 
 from pipeline.records import Doubt
 from pipeline.records.reading import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
-from pipeline.report.language import _
+from pipeline.report.assumed import assumed
+from pipeline.report.language import _, said
 from pipeline.report.text import clean, count, safe_cell, short, words
+from pipeline.report.units import Units
 
 READING = "reading"
 """Key of a run's settings under which it is kept what was refused and is doubted, and stem of the report's files."""
@@ -143,8 +145,8 @@ def is_reading_file(name: str) -> bool:
     return bool(_FILE.fullmatch(name))
 
 
-def write_doubts(file: Path, doubts: Iterable[Doubt]) -> ListedDoubts:
-    """Write the whole list as CSV, one entry at a time, and return what the pages show of it."""
+def write_doubts(file: Path, doubts: Iterable[Doubt], units: Units) -> ListedDoubts:
+    """Write the whole list as CSV, in English and SI, and return what the pages show of it, in the reader's units."""
     kinds: Counter[tuple[str, str]] = Counter()
     examples: dict[tuple[str, str], str] = {}
     with file.open("w", encoding="utf-8", newline="") as stream:
@@ -164,32 +166,34 @@ def write_doubts(file: Path, doubts: Iterable[Doubt]) -> ListedDoubts:
 
         first = nsmallest(SHOWN * PAGES, written(), key=_order)
     told = [
-        DoubtKind(words(clean(name)), short(remedy, _LONGEST), n, short(examples[name, remedy], 60))
+        DoubtKind(
+            said(words(clean(name))), short(assumed(remedy, units), _LONGEST), n, short(examples[name, remedy], 60)
+        )
         for (name, remedy), n in kinds.most_common(_TOLD)
         if name
     ]
-    return ListedDoubts(tuple(map(_view, first)), kinds.total(), tuple(told))
+    return ListedDoubts(tuple(_view(one, units) for one in first), kinds.total(), tuple(told))
 
 
 def _order(one: Doubt) -> tuple[int, bool, int, str]:
     return _ORDER[one.what], one.row is None, one.row or 0, one.object_number
 
 
-def _view(one: Doubt) -> DoubtView:
+def _view(one: Doubt, units: Units) -> DoubtView:
     return DoubtView(
         what=one.what,
         row="" if one.row is None else count(one.row),
         line="" if one.line is None else count(one.line),
         number=short(one.object_number, 120),
-        field=words(clean(one.field)),
-        message=short(one.message, _LONGEST),
-        remedy=short(one.remedy, _LONGEST),
+        field=said(words(clean(one.field))),
+        message=short(assumed(one.message, units), _LONGEST),
+        remedy=short(assumed(one.remedy, units), _LONGEST),
         characters="" if one.characters and one.characters in one.message else short(one.characters, _LONGEST),
-        used=_used(one),
+        used=_used(one, units),
     )
 
 
-def _used(one: Doubt) -> str:
+def _used(one: Doubt, units: Units) -> str:
     """Say what was made of an entry."""
     if one.what == REFUSED:
         return _("no object was made of it")
@@ -200,7 +204,18 @@ def _used(one: Doubt) -> str:
     if one.what == SHEET or not one.used:
         return _("not used")
     flags = {"on display": _("on display"), "not on display": _("not on display"), "yes": _("yes"), "no": _("no")}
+    if _SIZES.fullmatch(one.used):
+        return _SIZE.sub(lambda size: _size(size, units), one.used)
     return flags.get(one.used) or short(one.used, _LONGEST)
+
+
+def _size(found: re.Match[str], units: Units) -> str:
+    size = units.text(float(found[2]), found[3])
+    return f"{said(found[1])} {size}" if found[1] else size
+
+
+_SIZE = re.compile(r"(?:(height|width|depth|mass) )?(\d[\d.e+-]*) (m|kg)")
+_SIZES = re.compile(rf"{_SIZE.pattern}(?:, {_SIZE.pattern})*")
 
 
 _FILE = re.compile(rf"{READING}(?:-\d{{1,2}})?\.html|{READING}\.csv")

@@ -110,8 +110,7 @@ def _gain(settles: float, unlocks: int) -> str:
     told = []
     if settles:
         about = max(1, round(settles))
-        phrase = ngettext("decides about %(count)s case", "decides about %(count)s cases", about)
-        told.append(phrase % {"count": count(about)})
+        told.append(_("may change what is decided for %(count)s of them") % {"count": count(about)})
     if unlocks:
         phrase = ngettext("makes %(count)s check possible", "makes %(count)s checks possible", unlocks)
         told.append(phrase % {"count": count(unlocks)})

@@ -89,7 +89,7 @@ def validation_page(view: ValidationView, language: Language | None = None) -> s
         for one in drawings:
             symbols += one.symbol()
         pictures = [one.figure((), "") for one in drawings]
-        context = {"view": view, "pictures": pictures, "captions": [d.chart.caption for d in drawings]}
+        context = {"view": view, "pictures": pictures, "captions": [d.caption for d in drawings]}
         return clean(fill(environment(spoken), "validation.html", {**context, "symbols": symbols}))
 
 

@@ -104,6 +104,7 @@ class MeasureView:
     """One recommendation in words; ``ended`` are the failures that can no longer happen with it.
 
     plain    : what to do, for who does it
+    brief    : the same in a list of many objects
     sentence : the same with all its numbers
     named    : whether somebody is to say first what the object is
     """
@@ -118,6 +119,7 @@ class MeasureView:
     rejected: tuple[str, ...]
     source: str
     named: bool = False
+    brief: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +182,7 @@ class ObjectView:
     settled : whether people accepted or overruled all that does not pass, and nothing of that is in doubt
     taken   : how sure its class is, and which other is possible; "" where a person decided
     worth   : what it counts where losses are compared, and why; "" where nothing is recorded of that
+    dangers : what it may do by what it does not pass, in a sentence; "" for nothing
     """
 
     number: str
@@ -215,6 +218,7 @@ class ObjectView:
     decisions: tuple[DecisionView, ...] = ()
     settled: bool = False
     photo: PhotoView | None = None
+    dangers: str = ""
 
     @property
     def carded(self) -> bool:

@@ -208,9 +208,12 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
                 told[-1] = f"{pieces} × Ø {text}"
                 continue
             pieces = text if name == "pieces" else pieces
+            if name == "weight" and "heaviest" in advice.parameters:
+                told[-1] += ", " + _("%(number)s is likelier") % {"number": text}
+                continue
             plainly = {"times": _("%(number)s times its weight"), "pieces": _("%(number)s pieces")}
             plainly |= {"force": _("hold %(number)s in all") if pieces else _("to hold %(number)s")}
-            plainly |= {"clearance": _("%(number)s free all round")}
+            plainly |= {"clearance": _("%(number)s free all round"), "heaviest": _("for up to %(number)s")}
             plainly |= {"friction": _("friction %(number)s or more")} if advice.measure in _ROUGHER else {}
             told.append(plainly[name] % {"number": text} if name in plainly else f"{words(clean(name))} {text}")
     return parted(told)

@@ -8,6 +8,7 @@ from math import isnan
 from markupsafe import Markup
 
 from pipeline.records import Chart, Curve, Zone
+from pipeline.report.assumed import pictured
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
 from pipeline.report.plots import svg
@@ -70,16 +71,30 @@ class Drawing:
     def __init__(self, chart: Chart, units: Units, ident: str) -> None:
         self.chart, self.units, self.ident = chart, units, ident
         self._fx, self._fy = units.factor(chart.x.unit), units.factor(chart.y.unit)
-        self._named = [(c, short(said(c.label), 40 if chart.equal else 26)) for c in chart.curves if c.label and c.x]
+        longest = 40 if chart.equal else 26
+        self._named = [(c, short(self._said(c.label), longest)) for c in chart.curves if c.label and c.x]
         widest = 0 if chart.equal else max((len(name) for _curve, name in self._named), default=0)
         right = WIDTH - _RIGHT - (widest * LETTER + 4 if widest else 0)
         x, y = self._scale("x", _LEFT, right), self._scale("y", HEIGHT - _BOTTOM, _TOP)
         self.panel = Panel(x, y).equalised() if chart.equal else Panel(x, y)
-        names = ((short(said(z.label), 40), self._outline(z)) for z in chart.zones if z.label)
+        names = ((short(self._said(z.label), 40), self._outline(z)) for z in chart.zones if z.label)
         self._places = [
             (name, roomy([p[0] for p in outline], [p[1] for p in outline], len(name) * LETTER / 2))
             for name, outline in names
         ]
+
+    @property
+    def title(self) -> str:
+        """What it is, in the reader's language."""
+        return self._said(self.chart.title)
+
+    @property
+    def caption(self) -> str:
+        """What stands under it, in the reader's language and units."""
+        return self._said(self.chart.caption)
+
+    def _said(self, text: str) -> str:
+        return pictured(text, self.units)
 
     def _scale(self, which: str, start: float, end: float) -> Scale:
         axis, factor = getattr(self.chart, which), self._fx if which == "x" else self._fy
@@ -200,7 +215,7 @@ class Drawing:
             An ``<svg>``.
         """
         shown = [s for s in spots if not (isnan(s.x) or isnan(s.y))]
-        title = plain(said(self.chart.title)) + (f": {plain(short(subject, 60))}" if subject else "")
+        title = plain(self.title) + (f": {plain(short(subject, 60))}" if subject else "")
         told = " ".join(self.say(s, subject) for s in shown)
         if subject and not shown:
             told = _("Nothing is marked: the object’s place is not known.")
@@ -223,8 +238,8 @@ class Drawing:
 
     @cached_property
     def _contents(self) -> str:
-        lines = ", ".join(plain(said(c.label)) for c in self.chart.curves if c.label)
-        zones = ", ".join(plain(said(z.label)) for z in self.chart.zones if z.label)
+        lines = ", ".join(plain(self._said(c.label)) for c in self.chart.curves if c.label)
+        zones = ", ".join(plain(self._said(z.label)) for z in self.chart.zones if z.label)
         told = [_("Lines: %(names)s.") % {"names": lines}] if lines else []
         return " ".join(told + ([_("Zones: %(names)s.") % {"names": zones}] if zones else []))
 
@@ -248,7 +263,7 @@ class Drawing:
         names = {"across": plain(said(self.chart.x.label)), "up": plain(said(self.chart.y.label))}
         at = _("%(across)s %(x)s, %(up)s %(y)s") % {"x": x, "y": y, **names}
         told = [at if spot.label == plain(subject) else f"{plain(spot.label)}: {at}"]
-        told += [_('in the zone "%(zone)s"') % {"zone": plain(said(zone))}] if zone else []
+        told += [_('in the zone "%(zone)s"') % {"zone": plain(self._said(zone))}] if zone else []
         told += [_("beyond the edge of the chart")] if self._off(spot) != (0, 0) else []
         return ", ".join(told) + "."
 
