@@ -39,8 +39,12 @@ _KIND = re.compile(r"\(\s*([^()]+?)\s*\)\s*$")
 """What stands in brackets at the end and may say what the thing itself is: Brasão (desenho)."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
 """What a maker calls a thing, which is no model of it: Clock Model No. 101."""
+_IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])")
+"""What stands ahead of a thing made small: miniature furniture is no picture."""
 _THINGS = ("vessel", "dish", "seat", "table", "cabinet", "clock", "figurine")
-_NOT_THINGS = ("plate", "glass", "block", "group", "animal", "container", "figure", "tray", "stand")
+_NOT_IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])")
+"""What stands ahead of a thing made small: miniature furniture is no picture."""
+_THINGS = ("plate", "glass", "block", "group", "animal", "container", "figure", "tray", "stand")
 """What a medium calls stuff, or many: silver plate, plate glass, 22 groups of cards."""
 _READ = 10_000
 """Characters of a text that are searched for the name of the thing."""
@@ -171,7 +175,7 @@ def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleM
 @lru_cache(maxsize=16384)
 def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     """Return the known words and *endings of an object name or title, the likeliest name of the thing first."""
-    folded = _OF_MANY.sub("", _OF_SET.sub("", _MARK.sub(" , ", fold(text))))
+    folded = _IN_SMALL.sub("", _OF_MANY.sub("", _OF_SET.sub("", _MARK.sub(" , ", fold(text)))))
     parts = BREAK.split(folded)
     # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
     start = of.spanning.match(folded) if of.spanning is not None else None
