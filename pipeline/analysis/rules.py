@@ -62,6 +62,16 @@ _STEM = 2
 """Letters that must precede an ending such as *statuette."""
 _PLURAL = 6
 """Letters from which an e at the end may be that of a plural (Handschuhe): plane is no plan, and cane no can."""
+_ENDINGS = (
+    *(("chi", "co"), ("ghi", "go"), ("i", "o"), ("i", "e"), ("e", "a")),
+    *(("ina", "a"), ("ino", "o"), ("ino", "e"), ("etta", "a"), ("etto", "o"), ("ello", "o"), ("ella", "a")),
+    *(("illa", "a"), ("illo", "o"), ("ita", "a"), ("ito", "o"), ("inha", "a"), ("inho", "o"), ("ette", "e")),
+    *(("chen", ""), ("chen", "e"), ("lein", ""), ("lein", "e"), ("etje", ""), ("tje", ""), ("pje", ""), ("je", "")),
+    *(("orna", "a"), ("or", "a"), ("ar", ""), ("er", ""), ("ek", ""), ("ki", "ka"), ("y", "a"), ("y", "")),
+)
+"""Endings of plurals and of what is small, folded, and what stands in their place in the word that a table knows."""
+_RELATED = 4
+"""Letters from which a word may be a plural or a small kind of another."""
 _PART = re.compile(
     r"[(,:]\s*(lid|cover|stopper|fragment|sherd|deckel|couvercle|coperchio|tapa|deksel|capac|tampa|fragmento|frammento)s?"
     r"\s*\)?\s*$"
@@ -112,6 +122,8 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     kinds = _kinds(item.classification) | _kinds(item.object_name)
     classed, made = _wordless(item, kinds, of)
     name = _named(item, item.object_name, kinds, of) if item.object_name else _made_as(item, kinds, of)
+    if name is None and item.object_name:
+        name = _named(item, _related(item.object_name[:_READ], of), kinds, of)
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
     title = _named(item, item.title, kinds, of)
@@ -193,6 +205,25 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
                 if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
                     out.append(word)
     return tuple(out)
+
+
+@lru_cache(maxsize=4096)
+def _related(text: str, of: RuleTable) -> str:
+    """Return a name with the words that the table knows for their plurals and small kinds: alabardina, vasi, Krüglein.
+
+    Only of the names of things: in titles too many words end like these. "" where it has none.
+    """
+
+    def base(found: re.Match[str]) -> str:
+        word = found.group()
+        if len(word) < _RELATED or _known(of, word):
+            return word
+        able = (word.removesuffix(end) + other for end, other in _ENDINGS if word.endswith(end))
+        return next((one for one in able if one in of.by_word), word)
+
+    folded = fold(text)
+    other = WORD.sub(base, folded)
+    return "" if other == folded else other
 
 
 def _pictures(of: RuleTable, word: str) -> bool:
