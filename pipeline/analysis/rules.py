@@ -42,9 +42,7 @@ _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\
 _IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])")
 """What stands ahead of a thing made small: miniature furniture is no picture."""
 _THINGS = ("vessel", "dish", "seat", "table", "cabinet", "clock", "figurine")
-_NOT_IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])")
-"""What stands ahead of a thing made small: miniature furniture is no picture."""
-_THINGS = ("plate", "glass", "block", "group", "animal", "container", "figure", "tray", "stand")
+_NOT_THINGS = ("plate", "glass", "block", "group", "animal", "container", "figure", "tray", "stand")
 """What a medium calls stuff, or many: silver plate, plate glass, 22 groups of cards."""
 _READ = 10_000
 """Characters of a text that are searched for the name of the thing."""
@@ -72,6 +70,14 @@ _ENDINGS = (
 """Endings of plurals and of what is small, folded, and what stands in their place in the word that a table knows."""
 _RELATED = 4
 """Letters from which a word may be a plural or a small kind of another."""
+_MADE_OF = re.compile(r"木造|木彫|一木造|寄木造|[銅石鉄塑]造|塑像|(?:脱活)?乾漆|金銅|鋳銅|青銅|[陶磁石木銅鉄]製")
+"""What a Japanese title begins with that says what its thing is made of: no picture is called so."""
+_IN_FULL = re.compile(r"[^のとやにいるたなを\s]{4,}")
+"""What stands before the word for the thing in its full Japanese name, and in a picture's title seldom."""
+_FIGURES = ("statue", "standing_figure", "figurine")
+"""Classes of what a picture may show by the same name: a picture of Kannon is a figure of Kannon too."""
+_ON_WALLS = frozenset({"mural", "murale", "murales", "murali", "muraux"})
+"""Words that behind a relief say only where it is: a relief mural is a relief, and no wall painting."""
 _PART = re.compile(
     r"[(,:]\s*(lid|cover|stopper|fragment|sherd|deckel|couvercle|coperchio|tapa|deksel|capac|tampa|fragmento|frammento)s?"
     r"\s*\)?\s*$"
@@ -127,7 +133,9 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
     title = _named(item, item.title, kinds, of)
-    if name is not None and title is not None and _narrows(title, name):
+    if name is None and title is not None and not item.object_name and _is_full(item.title, title):
+        name = title
+    if name is not None and title is not None and (_narrows(title, name) or _one_of_types(title, item, of)):
         name = title
     # What is painted, drawn or printed is flat, whatever its title says that it shows, but for its own format.
     flat = made is not None and made.rule.object_class in PICTURES
@@ -135,6 +143,23 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     found = [one for one in (name or speaks, classed, made) if one is not None]
     decided = min(found, key=lambda one: one.rule.position, default=RuleMatch(of.rules[-1]))
     return Readings(decided, decided.rule.name in of.own, name, classed, made, title)
+
+
+def _is_full(text: str, title: RuleMatch) -> bool:
+    """Whether a Japanese title is the full name of its thing: what it is made of, or its ornament, and its name."""
+    word = title.word.removeprefix("*")
+    if not IDEOGRAPH.match(word) or not text.endswith(word):
+        return False
+    ornament = title.rule.object_class not in _FIGURES and _IN_FULL.fullmatch(text.removesuffix(word))
+    return bool(ornament or _MADE_OF.match(text))
+
+
+def _one_of_types(title: RuleMatch, item: Item, of: RuleTable) -> bool:
+    """Whether a title names a type behind the first of several that semicolons part: "gem; ewer", of an ewer."""
+    if title.rule.object_class in PICTURES or ";" not in item.object_name:
+        return False
+    titled = _candidates(item.title[:_READ], of)
+    return any(word in titled for part in item.object_name[:_READ].split(";")[1:] for word in _candidates(part, of)[:1])
 
 
 def _narrows(title: RuleMatch, name: RuleMatch) -> bool:
@@ -200,6 +225,8 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
         out += _spelt(of, [only.group(1)])
     for part in parts:
         found = WORD.findall(part)
+        if len(found) > 1 and found[-1] in _ON_WALLS and found[-2] in of.by_word and _relief(of, found[-2]):
+            found.pop()
         for end in range(len(found), 0, -1):
             for before, word in _known(of, found[end - 1]):
                 if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
@@ -224,6 +251,11 @@ def _related(text: str, of: RuleTable) -> str:
     folded = fold(text)
     other = WORD.sub(base, folded)
     return "" if other == folded else other
+
+
+def _relief(of: RuleTable, word: str) -> bool:
+    """Whether a word names what is carved of a wall."""
+    return any(rule.object_class == "relief" for rule in of.by_word[word])
 
 
 def _pictures(of: RuleTable, word: str) -> bool:

@@ -334,7 +334,7 @@ def _settle_number(
     other = next((column for column in (*able, *others) if _repeated(column) <= MOST_REPEATED), None)
     if other is not None:
         found["object_number"] = other
-        empty = len(able[0].filled) < (1 - MOST_REPEATED) * len(able[0].values)
+        empty = len(able[0].distinct) == len(able[0].filled)
         told.doubts.append(
             f"{able[0].name!r} {'is empty in many rows' if empty else 'gives many objects one number'}: "
             f"{other.name!r} is taken for theirs"

@@ -48,6 +48,8 @@ _ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
 _GLUED = re.compile(r"(\w{3,}?)(?:number|nummer|num|nr|no)")
 """A name of one word that ends with a word for number: "accessionnum"."""
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
+_SIDE = re.compile(r"([^(（\[]+)[(（\[]([^)）\]]+)[)）\]]")
+"""The name of a column that says in brackets what of something it is."""
 _OTHER = re.compile(r"[^\w]+|_")
 _SHORT = 4
 """Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
@@ -345,6 +347,10 @@ def _forms(name: str) -> Iterator[str]:
         yield f"{glued[1]} no"
     yield plain(unit_in(name)[0])
     yield plain(bare(name))
+    # "大きさ(高さ)", "Maße (Höhe) in cm": the side that stands in brackets behind a word for all of them.
+    side = _SIDE.fullmatch(unit_in(name)[0].strip())
+    if side is not None and _says(side[1]) == TEXTS and len(plain(side[2])) >= (2 if side[2].isascii() else 1):
+        yield plain(side[2])
     # "Objeto/Documento", "Titel | title": what either half says; of two rows of a head the lower one first.
     halves = [half for half in re.split(r"[/|,;]| - |\n", unit_in(name)[0]) if half.strip()]
     if len(halves) > 1:
