@@ -327,7 +327,7 @@ def _settle_number(
 
     That is the next one by its name, or else one that has another number in each row.
     """
-    if "object_number" in told.choices or not able or _repeated(able[0]) <= MOST_REPEATED:
+    if "object_number" in told.choices or not able or _repeated(able[0]) <= MOST_REPEATED or able[0].blanks:
         return
     fields = {id(column) for column in found.values()}
     others = [column for column in columns if id(column) not in fields and column.numbering and _repeated(column) == 0]
