@@ -160,15 +160,15 @@ def _title_alone(item: Item, read: Readings) -> tuple[str, ...]:
     return (*out, *(sign for sign in _signs_in(ALONE, title)))
 
 
-def is_alone(item: Item) -> bool:
-    """Say whether nothing but a title says what a thing is."""
-    return not any((item.object_name, item.classification, item.material, item.medium))
+def is_alone(item: Item, read: Readings) -> bool:
+    """Say whether nothing but a title says what a thing is, and it may as well be what a picture shows."""
+    return read.name is None and not any((item.object_name, item.classification, item.material, item.medium))
 
 
 def signs_of(item: Item, read: Readings) -> tuple[str, ...]:
     """Return the signs that an object shows: what the model weighs."""
     out, decisive = [BIAS], NOTHING
-    alone = is_alone(item)
+    alone = is_alone(item, read)
     # A name that only repeats the classification, such as sculpture, leaves the title its say.
     named = read.name is not None and fold(item.object_name) != fold(item.classification)
     for field in FIELDS:
@@ -280,7 +280,7 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
     if not chances:
         return None
     first = chances[0]
-    if is_alone(item) and not read.outright and SHAPES["panel"](item) and not faceless(item):
+    if is_alone(item, read) and not read.outright and SHAPES["panel"](item) and not faceless(item):
         flat = next(one for one in chances if one.object_class in PICTURES)
         if _pictured_parts().search(item.dimensions[:_READ]):
             return flat

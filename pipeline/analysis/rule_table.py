@@ -31,9 +31,22 @@ from pipeline.tables.rows import Entries, checked, once
 
 _IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")
 WORD = re.compile(r"[^\W\d_]+")
-BREAK = re.compile(
-    r"[,:;|()\[\]/\"]|\s(?:of|with|for|in|from|by|and|on|showing|depicting|mit|von|aus|und|fur|zum|zur|avec|de|du|des|et|a|au|aux|pour|sur|di|da|con|per|al|alla|su|y|para|sobre|e|com|em|met|van|en|voor|op|cu|din|pe|pentru|銘)\s"
+_SMALL_WORDS = (
+    "of|with|for|in|from|by|and|on|showing|depicting",
+    "mit|von|aus|und|fur|zum|zur|als|der|eines|einer",
+    "avec|de|du|des|et|a|au|aux|pour|sur",
+    "di|da|con|per|al|alla|su|del|della|dello|dei|degli|delle|dal|dalla",
+    "y|para|sobre|e|com|em|do|dos|das",
+    "met|van|en|voor|op",
+    "op|cu|din|pe|pentru",
+    "z|ze|na|dla|w|od",
+    "s|se|v|pro",
+    "av|af|med|till|til|fran|fra|for|och|og|som",
+    "с|из|для|на|в|от",
+    "με|απο|σε|για|του|της|και",
 )
+"""Words of eleven languages, folded, that end the name of a thing: prepositions, joined articles, genitives."""
+BREAK = re.compile(rf"[,:;|()\[\]/\"]|\s(?:{'|'.join(_SMALL_WORDS)}|銘)\s|\s[dl]['\u2019]")
 """Where the name of a thing ends and its description begins."""
 _SUPPORT = re.compile(
     r"\b(?:on|in|with|and|recessed in|auf|sur|su|sobre|op)\s[^,;]{0,40}?\b(?:base|plinth|socle|pedestal)\b"

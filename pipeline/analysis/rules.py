@@ -39,6 +39,8 @@ _KIND = re.compile(r"\(\s*([^()]+?)\s*\)\s*$")
 """What stands in brackets at the end and may say what the thing itself is: Brasão (desenho)."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
 """What a maker calls a thing, which is no model of it: Clock Model No. 101."""
+_IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])")
+"""What stands ahead of a thing made small: miniature furniture is no picture."""
 _THINGS = ("vessel", "dish", "seat", "table", "cabinet", "clock", "figurine")
 _NOT_THINGS = ("plate", "glass", "block", "group", "animal", "container", "figure", "tray", "stand")
 """What a medium calls stuff, or many: silver plate, plate glass, 22 groups of cards."""
@@ -58,6 +60,24 @@ _STEM = 2
 """Letters that must precede an ending such as *statuette."""
 _PLURAL = 6
 """Letters from which an e at the end may be that of a plural (Handschuhe): plane is no plan, and cane no can."""
+_ENDINGS = (
+    *(("chi", "co"), ("ghi", "go"), ("i", "o"), ("i", "e"), ("e", "a")),
+    *(("ina", "a"), ("ino", "o"), ("ino", "e"), ("etta", "a"), ("etto", "o"), ("ello", "o"), ("ella", "a")),
+    *(("illa", "a"), ("illo", "o"), ("ita", "a"), ("ito", "o"), ("inha", "a"), ("inho", "o"), ("ette", "e")),
+    *(("chen", ""), ("chen", "e"), ("lein", ""), ("lein", "e"), ("etje", ""), ("tje", ""), ("pje", ""), ("je", "")),
+    *(("orna", "a"), ("or", "a"), ("ar", ""), ("er", ""), ("ek", ""), ("ki", "ka"), ("y", "a"), ("y", "")),
+)
+"""Endings of plurals and of what is small, folded, and what stands in their place in the word that a table knows."""
+_RELATED = 4
+"""Letters from which a word may be a plural or a small kind of another."""
+_MADE_OF = re.compile(r"木造|木彫|一木造|寄木造|[銅石鉄塑]造|塑像|(?:脱活)?乾漆|金銅|鋳銅|青銅|[陶磁石木銅鉄]製")
+"""What a Japanese title begins with that says what its thing is made of: no picture is called so."""
+_IN_FULL = re.compile(r"[^のとやにいるたなを\s]{4,}")
+"""What stands before the word for the thing in its full Japanese name, and in a picture's title seldom."""
+_FIGURES = ("statue", "standing_figure", "figurine")
+"""Classes of what a picture may show by the same name: a picture of Kannon is a figure of Kannon too."""
+_ON_WALLS = frozenset({"mural", "murale", "murales", "murali", "muraux"})
+"""Words that behind a relief say only where it is: a relief mural is a relief, and no wall painting."""
 _PART = re.compile(
     r"[(,:]\s*(lid|cover|stopper|fragment|sherd|deckel|couvercle|coperchio|tapa|deksel|capac|tampa|fragmento|frammento)s?"
     r"\s*\)?\s*$"
@@ -108,10 +128,14 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     kinds = _kinds(item.classification) | _kinds(item.object_name)
     classed, made = _wordless(item, kinds, of)
     name = _named(item, item.object_name, kinds, of) if item.object_name else _made_as(item, kinds, of)
+    if name is None and item.object_name:
+        name = _named(item, _related(item.object_name[:_READ], of), kinds, of)
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
     title = _named(item, item.title, kinds, of)
-    if name is not None and title is not None and _narrows(title, name):
+    if name is None and title is not None and not item.object_name and _is_full(item.title, title):
+        name = title
+    if name is not None and title is not None and (_narrows(title, name) or _one_of_types(title, item, of)):
         name = title
     # What is painted, drawn or printed is flat, whatever its title says that it shows, but for its own format.
     flat = made is not None and made.rule.object_class in PICTURES
@@ -119,6 +143,23 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     found = [one for one in (name or speaks, classed, made) if one is not None]
     decided = min(found, key=lambda one: one.rule.position, default=RuleMatch(of.rules[-1]))
     return Readings(decided, decided.rule.name in of.own, name, classed, made, title)
+
+
+def _is_full(text: str, title: RuleMatch) -> bool:
+    """Whether a Japanese title is the full name of its thing: what it is made of, or its ornament, and its name."""
+    word = title.word.removeprefix("*")
+    if not IDEOGRAPH.match(word) or not text.endswith(word):
+        return False
+    ornament = title.rule.object_class not in _FIGURES and _IN_FULL.fullmatch(text.removesuffix(word))
+    return bool(ornament or _MADE_OF.match(text))
+
+
+def _one_of_types(title: RuleMatch, item: Item, of: RuleTable) -> bool:
+    """Whether a title names a type behind the first of several that semicolons part: "gem; ewer", of an ewer."""
+    if title.rule.object_class in PICTURES or ";" not in item.object_name:
+        return False
+    titled = _candidates(item.title[:_READ], of)
+    return any(word in titled for part in item.object_name[:_READ].split(";")[1:] for word in _candidates(part, of)[:1])
 
 
 def _narrows(title: RuleMatch, name: RuleMatch) -> bool:
@@ -171,7 +212,7 @@ def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleM
 @lru_cache(maxsize=16384)
 def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     """Return the known words and *endings of an object name or title, the likeliest name of the thing first."""
-    folded = _OF_MANY.sub("", _OF_SET.sub("", _MARK.sub(" , ", fold(text))))
+    folded = _IN_SMALL.sub("", _OF_MANY.sub("", _OF_SET.sub("", _MARK.sub(" , ", fold(text)))))
     parts = BREAK.split(folded)
     # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
     start = of.spanning.match(folded) if of.spanning is not None else None
@@ -184,11 +225,37 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
         out += _spelt(of, [only.group(1)])
     for part in parts:
         found = WORD.findall(part)
+        if len(found) > 1 and found[-1] in _ON_WALLS and found[-2] in of.by_word and _relief(of, found[-2]):
+            found.pop()
         for end in range(len(found), 0, -1):
             for before, word in _known(of, found[end - 1]):
                 if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
                     out.append(word)
     return tuple(out)
+
+
+@lru_cache(maxsize=4096)
+def _related(text: str, of: RuleTable) -> str:
+    """Return a name with the words that the table knows for their plurals and small kinds: alabardina, vasi, Krüglein.
+
+    Only of the names of things: in titles too many words end like these. "" where it has none.
+    """
+
+    def base(found: re.Match[str]) -> str:
+        word = found.group()
+        if len(word) < _RELATED or _known(of, word):
+            return word
+        able = (word.removesuffix(end) + other for end, other in _ENDINGS if word.endswith(end))
+        return next((one for one in able if one in of.by_word), word)
+
+    folded = fold(text)
+    other = WORD.sub(base, folded)
+    return "" if other == folded else other
+
+
+def _relief(of: RuleTable, word: str) -> bool:
+    """Whether a word names what is carved of a wall."""
+    return any(rule.object_class == "relief" for rule in of.by_word[word])
 
 
 def _pictures(of: RuleTable, word: str) -> bool:

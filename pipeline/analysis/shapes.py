@@ -100,6 +100,7 @@ SHAPES: Mapping[str, Callable[[Item], bool]] = {
     "not-tiny": lambda item: max(_sizes(item), default=0.0) >= TINY,
     "bead": lambda item: max(_sizes(item), default=BEAD) < BEAD,
     "broad": _broad,
+    "unsized": lambda item: not _sizes(item),
 }
 """The measures that a row may ask for.  A record without the dimensions is no small, tall, large or tiny thing, but
 a flat one."""

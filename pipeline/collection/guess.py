@@ -310,7 +310,7 @@ def _chosen(
             names = tuple(column.name for column in those)
             words = fieldname.removesuffix("_m").removesuffix("_kg").replace("_", " ")
             told.questions.append(Question(fieldname, f"which column is the {words}?", names, names[0]))
-    _settle_number(able.get("object_number", ()), found, told)
+    _settle_number(able.get("object_number", ()), columns, found, told)
     number = found.get("object_number")
     if number is None:
         found["object_number"] = number = _unique(name, columns, found)
@@ -340,15 +340,24 @@ def _chosen(
     return found
 
 
-def _settle_number(able: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:
-    """Take the next column of numbers where the likeliest repeats them, as the number of an accession of many does."""
-    if "object_number" in told.choices or not able:
+def _settle_number(
+    able: Sequence[Column], columns: Sequence[Column], found: dict[str, Column], told: GuessNotes
+) -> None:
+    """Take another column of numbers where the likeliest repeats them or is empty, as of accessions of many objects.
+
+    That is the next one by its name, or else one that has another number in each row.
+    """
+    if "object_number" in told.choices or not able or _repeated(able[0]) <= MOST_REPEATED or able[0].blanks:
         return
-    least = min(_repeated(column) for column in able)
-    if _repeated(able[0]) > MOST_REPEATED >= least:
-        found["object_number"] = next(column for column in able if _repeated(column) <= MOST_REPEATED)
+    fields = {id(column) for column in found.values()}
+    others = [column for column in columns if id(column) not in fields and column.numbering and _repeated(column) == 0]
+    other = next((column for column in (*able, *others) if _repeated(column) <= MOST_REPEATED), None)
+    if other is not None:
+        found["object_number"] = other
+        empty = len(able[0].distinct) == len(able[0].filled)
         told.doubts.append(
-            f"{able[0].name!r} gives many objects one number: {found['object_number'].name!r} is taken for theirs"
+            f"{able[0].name!r} {'is empty in many rows' if empty else 'gives many objects one number'}: "
+            f"{other.name!r} is taken for theirs"
         )
 
 

@@ -22,6 +22,7 @@ from scipy.special import logsumexp
 from threadpoolctl import threadpool_limits
 
 from pipeline.analysis.evidence import AGREES, BIAS, GALLERY, SAYING, SILENT, Weights, read_weights, shares_of, signs_of
+from pipeline.analysis.rule_table import rules
 from pipeline.analysis.rules import PICTURES, readings
 from pipeline.records import Item
 from pipeline.tables import table
@@ -47,6 +48,12 @@ HIDDEN: tuple[tuple[tuple[str, ...], float], ...] = (
 
 RENAMED = 0.3
 """Weight of an object whose title is taken as its object name."""
+
+BARE = 3.0
+"""Weight of what the table of rules says of a name that stands alone, for each rule that names things.
+
+Few of the labelled objects have nothing but a name, and museums that record little have many such.
+"""
 
 NAMING = (1, 3)
 """Words that a title has, at least and at most, which is what other museums record as the name of the thing."""
@@ -104,6 +111,18 @@ def _named(one: Labelled) -> tuple[Item, ...]:
     return (replace(item, object_name=item.classification, classification=""),) if item.classification else ()
 
 
+@cache
+def _bare() -> Mapping[tuple[tuple[str, ...], str], float]:
+    """Return the signs that names alone show, each with the class that its rule says."""
+    out = {}
+    for word in sorted(rules().by_word):
+        item = Item("-", "", object_name=word)
+        read = readings(item)
+        if read.name is not None and read.name is read.decided:
+            out[signs_of(item, read), read.decided.rule.object_class] = BARE
+    return out
+
+
 def _show(item: Item, share: float, out: dict[tuple[str, ...], float]) -> None:
     """Add the signs of an object, whole and with parts hidden, each with a share of its weight."""
     for hidden, weight in HIDDEN:
@@ -118,7 +137,7 @@ def fit(objects: Sequence[Labelled]) -> Weights:
     """Return the weights that make the labels most probable, less the penalties."""
     classes = CLASSES
     # Many objects show the same: together they are one case of as much weight, two fifths fewer.
-    alike: dict[tuple[tuple[str, ...], int], float] = {}
+    alike = {(signs, classes.index(name)): share for (signs, name), share in _bare().items()}
     for one in objects:
         for signs, share in _shown(one).items():
             case = signs, classes.index(one.object_class)

@@ -176,11 +176,11 @@ def test_museums_that_were_labelled_before_they_were_read() -> None:
     with OTHERS.open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     items = [(row["class"], labelled_of(row).item) for row in rows]
-    pairs = [(right, classify(item).object_class) for right, item in items if not is_alone(item)]
+    pairs = [(right, classify(item).object_class) for right, item in items if not is_alone(item, readings(item))]
     assert len(pairs) > 240
     assert np.mean([right == taken for right, taken in pairs]) >= 0.87
     assert np.mean([SUPPORT[right] == SUPPORT[taken] for right, taken in pairs]) >= 0.91
-    bare = [(right, classify(item)) for right, item in items if is_alone(item) and item.title]
+    bare = [(right, classify(item)) for right, item in items if is_alone(item, readings(item)) and item.title]
     assert len(bare) > 10
     wrong = [scene for right, scene in bare if scene.object_class != right]
     assert all("title alone" in scene.rule or scene.next_class for scene in wrong)

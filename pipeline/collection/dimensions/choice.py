@@ -66,6 +66,12 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
             whole = [g for g in alike if g[0].name == chosen[0].name and _has_height(g, out["height"].value)]
             sides = max((_extents(g, _reason(g, 1, False)) for g in whole), key=len, default=out)
             out = sides | out
+    if "height" not in out:
+        # A figure's height beside the width over its knees, each a group of its own.
+        figures = [
+            one for g in bodies if g[0].name == "figure" and "height" in (one := _extents(g, _reason(g, 1, False)))
+        ]
+        out |= {"height": max((one["height"] for one in figures), key=lambda one: one.value)} if figures else {}
     bases = [g for g in groups.values() if is_base(g[0].name)]
     if bases:
         out |= _base(max(bases, key=_size))

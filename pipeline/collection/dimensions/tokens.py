@@ -61,6 +61,11 @@ _SAME_LENGTH = (
     # What a list begins its entries with: "• Maße: o Tiefe: 17,2 cm o Breite: 29,4 cm"
     (re.compile(r"[•‣▪●◦](?=\s*[^\W\d_])"), ";"),
     (re.compile(r"(?<=\s)o(?=\s+[^\W\d_]{3,}\s*:)"), ";"),
+    # Of a seated figure the face is a part, where a mask is all; 〔台座〕 is a heading of what follows.
+    (re.compile(r"面(?=[幅奥長].*膝張)", re.DOTALL), "顔"),
+    (re.compile(r"(?<=[〕】]);"), " "),
+    (re.compile(r"[〔【]"), " "),
+    (re.compile(r"[〕】]"), ":"),
     # What is measured so is the whole, and no handle: W. handle to handle 12 in.
     (re.compile(r"(?i)\bhandle to handle\b"), "across across   "),
     (re.compile(r"(?i)\bhandle to spout\b"), "across across  "),

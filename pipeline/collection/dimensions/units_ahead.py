@@ -86,7 +86,7 @@ def units_behind(tokens: list[Token]) -> list[Token]:
 def _is_ahead(tokens: list[Token], at: int, moved: dict[int, LexiconUnit]) -> bool:
     """Whether a unit belongs to no number before it, and there is one that it may belong to."""
     unit = tokens[at].unit
-    if unit is None or unit.name not in _NAMES or not tokens[at].word.isalpha():
+    if unit is None or unit.name not in _NAMES or not tokens[at].word.strip("."):
         return False
     back = at - 1
     while back >= 0 and tokens[back].type in (DOT, OPEN, DIMENSION, CLOSE):

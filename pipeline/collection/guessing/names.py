@@ -52,6 +52,8 @@ _GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Obj|Acc|Ide|Dim|Mea)(?=[A-Z])")
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _REFERENCE = re.compile(r"(?<=[a-z])(?:Ref|Grp|Tab)$")
 """Behind the name of what is told by another table."""
+_SIDE = re.compile(r"([^(（\[]+)[(（\[]([^)）\]]+)[)）\]]")
+"""The name of a column that says in brackets what of something it is."""
 _OTHER = re.compile(r"[^\w]+|_")
 _SHORT = 4
 """Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
@@ -350,6 +352,10 @@ def _forms(name: str) -> Iterator[str]:
         yield f"{glued[1]} no"
     yield plain(unit_in(name)[0])
     yield plain(bare(name))
+    # "大きさ(高さ)", "Maße (Höhe) in cm": the side that stands in brackets behind a word for all of them.
+    side = _SIDE.fullmatch(unit_in(name)[0].strip())
+    if side is not None and _says(side[1]) == TEXTS and len(plain(side[2])) >= (2 if side[2].isascii() else 1):
+        yield plain(side[2])
     # "Objeto/Documento", "Titel | title": what either half says; of two rows of a head the lower one first.
     halves = [half for half in re.split(r"[/|,;]| - |\n", unit_in(name)[0]) if half.strip()]
     if len(halves) > 1:

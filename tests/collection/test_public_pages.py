@@ -1,0 +1,113 @@
+"""Real things as museums print them on their pages, in eight languages, from file to class by the guess alone.
+
+Truth: tests/data/collections/public_pages/truth.csv, written before any row was read (README there).
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from pipeline.analysis.classify import classify
+from pipeline.collection.reading import read_items
+from pipeline.night.importing import proposed
+from pipeline.records import Item
+from pipeline.verification.class_scores import MANNER
+
+FOLDER = Path(__file__).parents[1] / "data" / "collections"
+PLAIN = re.compile(r"(its )?[\w ]+(, which lies in plan)?, of the object itself;")
+"""How a note of a number begins that nothing more is said of."""
+NEAR = 0.006
+REACHED = {"learn": (38, 53, 53), "held": (61, 70, 71)}
+"""Heights, classes and manners of support right of 53 and 76 rows, as reached; less is a loss."""
+
+
+def rows_of(part: str) -> list[tuple[dict[str, str], Item]]:
+    """Return the marks of a set's rows, each with the thing that is read."""
+    with (FOLDER / "public_pages" / "truth.csv").open(encoding="utf-8", newline="") as stream:
+        marks = [row for row in csv.DictReader(stream) if row["set"] == part]
+    found = []
+    for name in sorted({mark["file"] for mark in marks}):
+        path = FOLDER / "public_pages" / part / f"{name}.csv"
+        items = {item.object_number: item for item in read_items(path, proposed(str(path)).guess.mapping).items}
+        with path.open(encoding="utf-8", newline="") as stream:
+            # A mark has the first cell of its row; the number is taken from whichever column has one for each.
+            cells = {row[0]: row for row in csv.reader(stream)}
+        for mark in marks:
+            if mark["file"] == name:
+                number = mark["number"]
+                able = (number, number.split(" ; ")[0], *cells[number])
+                found.append((mark, next(items[one] for one in able if one in items)))
+    return found
+
+
+def is_high(mark: dict[str, str], item: Item) -> bool:
+    """Whether a height is one of those that were marked; "12?" is one that may also be left open with a word."""
+    heights = [float(one) / 100 for one in re.split(r"[|?]", mark["height_cm"]) if one]
+    if item.height_m is None:
+        return "?" in mark["height_cm"] and is_said(item)
+    return any(item.height_m == pytest.approx(one, rel=NEAR) for one in heights)
+
+
+def is_said(item: Item) -> bool:
+    """Whether anything is said of how a thing's numbers were read."""
+    return bool(item.problems) or any(one.note and not PLAIN.match(one.note) for one in item.provenance)
+
+
+@pytest.mark.parametrize("part", REACHED)
+def test_things_of_museums_pages_are_read_by_the_guess_alone(part: str) -> None:
+    """Whatever is not as marked is said, and a class that is said to be 90 % sure is right."""
+    rows = rows_of(part)
+    sized = [(mark, item) for mark, item in rows if re.search(r"\d", mark["height_cm"])]
+    wrong = [item for mark, item in sized if not is_high(mark, item)]
+    heights, classes, manners = REACHED[part]
+    assert len(sized) - len(wrong) >= heights, [(item.object_number, item.dimensions) for item in wrong]
+    assert all(map(is_said, wrong))
+    taken = [(mark["classes"].split("|"), classify(item)) for mark, item in rows]
+    assert sum(scene.object_class in able for able, scene in taken) >= classes
+    assert sum(MANNER[scene.object_class] in {MANNER[one] for one in able} for able, scene in taken) >= manners
+    sure = [scene.object_class in able for able, scene in taken if scene.chances and scene.chances[0][1] >= 0.9]
+    assert all(sure)
+    assert all(item.on_display == (mark["display"] == "1") for mark, item in rows if mark["display"] != "-")
+
+
+def test_names_of_things_in_twelve_languages() -> None:
+    """Of 3,879 names at least 93 % are taken for the class that was marked, and 95 % for its manner of support.
+
+    That is 1.5 % below what is reached. Words were added to the table for the names that it had not known.
+    """
+    with (FOLDER / "names_of_things.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    right: Counter[str] = Counter()
+    many = Counter(row["language"] for row in rows)
+    manners = 0
+    for row in rows:
+        able = row["classes"].split("|")
+        taken = classify(Item("1", "Room", object_name=row["name"])).object_class
+        right[row["language"]] += taken in able
+        manners += MANNER[taken] in {MANNER[one] for one in able}
+    assert len(rows) == 3879
+    assert sum(right.values()) / len(rows) >= 0.93
+    assert manners / len(rows) >= 0.955
+    assert min(right[one] / many[one] for one in many) >= 0.88
+
+
+@pytest.mark.parametrize(
+    ("fields", "taken"),
+    [
+        ({"title": "木造虚空蔵菩薩坐像"}, "statue"),
+        ({"title": "花鳥沈金大硯箱"}, "cabinet"),
+        ({"object_name": "relief mural"}, "relief"),
+        ({"object_name": "peinture murale"}, "wall_painting"),
+        ({"object_name": "gemme(s) de la couronne ; aiguière", "title": "Vase transformé en aiguière"}, "vessel"),
+        ({"object_name": "alabardina"}, "mounted"),
+    ],
+)
+def test_names_that_were_mistaken(fields: dict[str, str], taken: str) -> None:
+    item = replace(Item("1", "Room", height_m=0.9, width_m=0.4), **fields)  # type: ignore[arg-type]
+    assert classify(item).object_class == taken
