@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import json
 import os
 import sqlite3
 import sys
@@ -126,13 +125,10 @@ def postgresql_url(postgresql_databases: Callable[[], str]) -> str:
 
 @pytest.fixture(scope="session")
 def demo_folder() -> Path:
-    """The folder of a demonstration that was run once: settings, database, reports; it is only looked at.
-
-    Where `make demo` was not run by this very code, with fewer samples: what they tell is for tests of their own.
-    """
+    """The folder of a demonstration that was run once: settings, database, reports; it is only looked at."""
     from pipeline.cli.console import Console
-    from pipeline.tools.demo import demo, demonstration
-    from tests.museum import DATABASE, few_samples, in_common, with_tables
+    from pipeline.tools.demo import demo
+    from tests.museum import DATABASE, in_common, with_tables
 
     folder = Path(os.environ[SHARED]) / "demo"
     with FileLock(folder.with_suffix(".lock")):
@@ -140,32 +136,22 @@ def demo_folder() -> Path:
             folder.mkdir(exist_ok=True)
             in_common(folder)
             with_tables(folder / DATABASE)
-            if not _taken_over(Path(__file__).parents[1] / "kouros-demo" / DATABASE, folder / DATABASE):
-                demonstration(folder)
-                settings = folder / "kouros.toml"
-                settings.write_text(few_samples(settings.read_text(encoding="utf-8")), encoding="utf-8")
+            _take_over(Path(__file__).parents[1] / "kouros-demo" / DATABASE, folder / DATABASE)
             demo(folder, Console(quiet=True))
     return folder
 
 
-def _taken_over(made: Path, database: Path) -> bool:
-    """Give a demonstration what that of `make demo` found, and return whether the same code made it."""
-    from pipeline.resources import code_version
-
-    if not made.exists():
-        return False
-    with (
-        closing(sqlite3.connect(f"file:{quote(str(database))}", uri=True)) as connection,
-        # Of another version its tables may have other columns.
-        suppress(sqlite3.DatabaseError),
-    ):
-        connection.execute("ATTACH ? AS made", (f"file:{quote(str(made))}?mode=ro",))
-        last = connection.execute("SELECT settings FROM made.run ORDER BY started DESC LIMIT 1").fetchone()
-        if last is not None and json.loads(last[0])["code"] == code_version()[:12]:
+def _take_over(made: Path, database: Path) -> None:
+    """Give a demonstration what that of `make demo` found, if the same code made it: no other has the same keys."""
+    if made.exists():
+        with (
+            closing(sqlite3.connect(f"file:{quote(str(database))}", uri=True)) as connection,
+            suppress(sqlite3.DatabaseError),
+        ):
+            # Of another version its table may have other columns.
+            connection.execute("ATTACH ? AS made", (f"file:{quote(str(made))}?mode=ro",))
             with connection:
                 connection.execute("INSERT INTO result SELECT * FROM made.result")
-            return True
-    return False
 
 
 @pytest.fixture(scope="session")
