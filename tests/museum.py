@@ -99,7 +99,7 @@ def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief") 
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     file = folder / "kouros.toml"
     text = template(museum="Test", source="export.csv", mapping="mapping.toml", site=site)
-    file.write_text(few_samples(text), encoding="utf-8")
+    file.write_text(one_thread(few_samples(text)), encoding="utf-8")
     return load_settings(file)
 
 
@@ -107,6 +107,15 @@ def few_samples(settings: str) -> str:
     """Let settings draw as few samples as they can: most of a small night is else spent on them."""
     assert "samples = 512" in settings
     return settings.replace("samples = 512", "samples = 64")
+
+
+def one_thread(settings: str) -> str:
+    """Let a night of a few objects work on one thread: to start others for each step takes a tenth of it.
+
+    That threads change no digit is for tests that have several: those of processes and clusters, and of the analysis.
+    """
+    assert "workers = 0" in settings
+    return settings.replace("workers = 0", "workers = 1")
 
 
 def on_the_floor(folder: Path) -> Settings:

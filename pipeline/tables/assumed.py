@@ -141,8 +141,10 @@ _FINISH = re.compile(
 
 def _any_of(words: Sequence[str]) -> re.Pattern[str]:
     # Chinese, Japanese and Korean part no words from each other.
-    parted = [re.escape(word) if _UNPARTED.match(word) else rf"\b{re.escape(word)}\b" for word in words]
-    return re.compile("|".join(parted), re.IGNORECASE)
+    within = [re.escape(word) for word in words if _UNPARTED.match(word)]
+    parted = [re.escape(word) for word in words if not _UNPARTED.match(word)]
+    # One boundary for all: to look for it before each word took four times as long.
+    return re.compile("|".join([*within, *([rf"\b(?:{'|'.join(parted)})\b"] if parted else [])]), re.IGNORECASE)
 
 
 @lru_cache(maxsize=65536)

@@ -57,7 +57,9 @@ def files(settings: Settings) -> dict[str, bytes]:
 
 
 @pytest.mark.usefixtures("shared")
-def test_two_processes_of_this_machine(alone: Settings, tmp_path: Path) -> None:
+def test_two_processes_of_this_machine(alone: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Those that assess draw the pages as well.
+    monkeypatch.setattr(staff, "SHOWN", len(OBJECTS))
     settings = museum_of(tmp_path / "two", OBJECTS)
     execution = settings.execution.model_copy(update={"processes": 2})
     settings = settings.model_copy(update={"execution": execution})

@@ -24,9 +24,9 @@ STRIDE = int(os.environ.get("KOUROS_CALLS", "0"))
 """One call of so many is disturbed, from the first on; `make soak` disturbs each; 0: the sample of every day."""
 
 SAMPLE = {
-    "run": {"kill": [29, 120], "full disk": [47, 230]},
-    "import": {"kill": [17, 40], "full disk": [24, 40]},
-    "decide": {"kill": [20, 40], "full disk": [13, 40]},
+    "run": {"kill": [29, 180], "full disk": [47, 300]},
+    "import": {"kill": [17, 60], "full disk": [24, 60]},
+    "decide": {"kill": [20, 60], "full disk": [13, 60]},
     "prune": {"kill": [150, 400]},
     "report": {"kill": [90, 400], "full disk": [60, 400]},
 }
