@@ -12,8 +12,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.mapping import load_mapping
-from pipeline.collection.reading import read_items
 from pipeline.collection.sources import lido, xml_records
 from pipeline.collection.sources.lido import COLUMNS, read_records
 from pipeline.collection.sources.rows import Row
@@ -105,18 +103,6 @@ def test_a_record_of_a_german_museum() -> None:
         "base height": "9 cm",
         "base width": "20 cm",
     }
-
-
-def test_a_folder_of_files_is_read_as_one_file(tmp_path: Path) -> None:
-    made = [record(number=str(at), title="Büste", place="Saal 3", sizes="") for at in range(3)]
-    (tmp_path / "all.xml").write_bytes(wrap(*made))
-    folder = tmp_path / "harvest"
-    folder.mkdir()
-    for at, single in enumerate(made):
-        (folder / f"{at}.xml").write_bytes(wrap(single))
-    told = [read_items(path, load_mapping("lido")).items for path in (tmp_path / "all.xml", folder)]
-    assert [item.object_number for item in told[0]] == ["0", "1", "2"]
-    assert told[0] == told[1]
 
 
 def test_concepts_of_version_1_1() -> None:
