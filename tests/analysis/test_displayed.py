@@ -85,3 +85,39 @@ def test_a_surface_told_by_its_display_is_that_of_its_friction() -> None:
     friction = classify(with_words(BUST, "on stone floor")).parameters["friction_static"]
     assert friction.origin is Origin.ASSUMED
     assert (friction.low, friction.value, friction.high) == (0.15, 0.55, 0.85)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "on plinth, not fixed",
+        "not bolted to its plinth",
+        "nicht befestigt auf dem Sockel",
+        "nicht an der Wand befestigt",
+        "must be clamped to the plinth",
+        "to be strapped",
+        "formerly screwed to the wall, now on a pedestal",
+        "doit être fixé au socle",
+        "non fissato, su plinto",
+        "sin fijar, sobre peana",
+        "ohne Befestigung in der Vitrine",
+        "no longer bolted",
+        "unstrapped",
+        "固定されていない",
+    ],
+)
+def test_what_is_not_so_or_only_meant_to_be_holds_nothing(words: str) -> None:
+    told = told_by(words)
+    assert told.support in (None, Support.FREESTANDING)
+    assert told.mount is None
+
+
+@pytest.mark.parametrize(
+    "words", ["bolted to the floor", "vissé au socle", "fissato al plinto", "台座に固定", "strapped to its stand"]
+)
+def test_what_is_so_holds(words: str) -> None:
+    assert told_by(words).support is Support.FASTENED
+
+
+def test_a_showcase_stays_one_where_nothing_holds_what_is_in_it() -> None:
+    assert told_by("in showcase, not fixed").furniture is Furniture.SHOWCASE
