@@ -9,16 +9,7 @@ from pydantic import BeforeValidator
 
 from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support
 from pipeline.tables import table
-from pipeline.tables.rows import SOME_WORDS, Entries, TableRow, Text, checked
-
-_BUT_NOT = re.compile(
-    r"(?:\b(?:not|never|without|no longer|isn't|aren't|formerly|previously|once|to be|should be|must be|will be|can be"
-    r"|needs? to be|nicht|ohne|keine?|früher|ehemals|muss|müsste|soll|sollte|wird|non|pas|sans|jamais|autrefois"
-    r"|doit être|sera|senza|già|deve essere|sarà|no|sin|nunca|antes|debe ser|será|niet|zonder|moet|wordt|δεν|χωρίς|πρέπει να)"
-    r"\s+(?:\w+\s+){0,3}|\bun)$",
-    re.IGNORECASE,
-)
-"""Before words that then tell what is not so: "not bolted", "must be clamped", "formerly fixed"."""
+from pipeline.tables.rows import BUT_NOT, SOME_WORDS, Entries, TableRow, Text, checked
 
 _JOINED = re.compile("[\u2e80-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
@@ -75,7 +66,7 @@ def _pattern(word: str) -> str:
 def _says(pattern: re.Pattern[str], row: HeldWords, text: str) -> bool:
     holds = row.support in (Support.FASTENED, Support.HUNG, Support.SUSPENDED)
     # Where it is told what is not so, or is only meant to be, nothing holds it by these words.
-    return any(not (holds and _BUT_NOT.search(text[: one.start()])) for one in pattern.finditer(text))
+    return any(not (holds and BUT_NOT.search(text[: one.start()])) for one in pattern.finditer(text))
 
 
 @lru_cache(maxsize=4096)

@@ -1,5 +1,6 @@
 """Rows of tables checked by models: each table has one class that says what its columns may hold."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from typing import Annotated, TypeVar
@@ -22,6 +23,16 @@ from pipeline.tables import Range, Row, TableError
 Model = TypeVar("Model")
 RowOfWay = TypeVar("RowOfWay", bound="TableRow")
 Way = TypeVar("Way", bound=StrEnum)
+
+BUT_NOT = re.compile(
+    r"(?:\b(?:not|never|without|no longer|isn't|aren't|formerly|previously|once|to be|should be|must be|will be|can be"
+    r"|needs? to be|nicht|ohne|keine?|früher|ehemals|muss|müsste|soll|sollte|wird|non|pas|sans|jamais|autrefois"
+    r"|doit être|sera|senza|già|deve essere|sarà|no|sin|nunca|antes|debe ser|será|niet|zonder|moet|wordt|δεν|χωρίς"
+    r"|πρέπει να)"
+    r"\s+(?:\w+\s+){0,3}|\bun)$",
+    re.IGNORECASE,
+)
+"""Before words that then tell what is not so: "not bolted", "must be clamped", "formerly fixed"."""
 
 SOME_WORDS = r"(?:\w+\W+){0,3}"
 """What * stands for in the words of a table: up to three words."""

@@ -92,3 +92,8 @@ def test_what_is_met_in_a_case_is_no_floor() -> None:
 )
 def test_a_surface_is_told_by_what_something_stands_on(words: str, surfaces: tuple[str, ...]) -> None:
     assert surfaces_in(words) == surfaces
+
+
+def test_a_surface_that_is_not_there_is_none() -> None:
+    assert surfaces_in("without felt pads on marble floor") == ("stone",)
+    assert surfaces_in("on felt pads on marble floor") == ("felt",)
