@@ -24,15 +24,16 @@ Model = TypeVar("Model")
 RowOfWay = TypeVar("RowOfWay", bound="TableRow")
 Way = TypeVar("Way", bound=StrEnum)
 
-BUT_NOT = re.compile(
-    r"(?:\b(?:not|never|without|no longer|isn't|aren't|formerly|previously|once|to be|should be|must be|will be|can be"
-    r"|needs? to be|nicht|ohne|keine?|früher|ehemals|muss|müsste|soll|sollte|wird|non|pas|sans|jamais|autrefois"
-    r"|doit être|sera|senza|già|deve essere|sarà|no|sin|nunca|antes|debe ser|será|niet|zonder|moet|wordt|δεν|χωρίς"
-    r"|πρέπει να)"
-    r"\s+(?:\w+\s+){0,3}|\bun)$",
-    re.IGNORECASE,
+_DENIED = (
+    r"not|never|without|no longer|isn't|aren't|formerly|previously|once|to be|should be|must be|will be|can be|needs? to be"
+    r"|nicht|ohne|keine?|früher|ehemals|muss|müsste|soll|sollte|wird|non|pas|sans|jamais|autrefois|doit être|sera|senza|già"
+    r"|deve essere|sarà|no|sin|nunca|antes|debe ser|será|niet|zonder|moet|wordt|δεν|χωρίς|πρέπει να"
 )
-"""Before words that then tell what is not so: "not bolted", "must be clamped", "formerly fixed"."""
+NO = re.compile(rf"\b(?:{_DENIED})\s+(?:\w+\s+)?$", re.IGNORECASE)
+"""Before a thing that then is not there: "without felt", "no rubber"."""
+
+BUT_NOT = re.compile(rf"(?:\b(?:{_DENIED})\s+(?:\w+\s+){{0,3}}|\bun)$", re.IGNORECASE)
+"""Before what then is not done: "not bolted", "must be clamped", "nicht an der Wand befestigt"."""
 
 SOME_WORDS = r"(?:\w+\W+){0,3}"
 """What * stands for in the words of a table: up to three words."""

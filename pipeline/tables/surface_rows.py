@@ -6,7 +6,7 @@ from functools import cache, lru_cache
 
 from pipeline.records import Furniture
 from pipeline.tables import table
-from pipeline.tables.rows import BUT_NOT, Entries, TableRow, Text, YesNo, checked
+from pipeline.tables.rows import NO, Entries, TableRow, Text, YesNo, checked
 
 _PLACES = (
     "floors?|flooring|ground|shel(?:f|ves)|decks?|plinths?|pedestals?|platforms?|blocks?|slabs?|tables?|"
@@ -83,7 +83,7 @@ def surfaces_in(text: str, *, of_surface: bool = False) -> tuple[str, ...]:
         that lies on.
     """
     patterns = ((name, alone if of_surface else bound) for name, alone, bound in _patterns())
-    found = (name for name, one in patterns if any(not BUT_NOT.search(text[: m.start()]) for m in one.finditer(text)))
+    found = (name for name, one in patterns if any(not NO.search(text[: m.start()]) for m in one.finditer(text)))
     told = tuple(dict.fromkeys(found))
     return tuple(name for name in told if name not in met_on()) or told
 
