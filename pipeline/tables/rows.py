@@ -25,9 +25,9 @@ RowOfWay = TypeVar("RowOfWay", bound="TableRow")
 Way = TypeVar("Way", bound=StrEnum)
 
 _DENIED = (
-    r"not|never|without|no longer|isn't|aren't|formerly|previously|once|to be|should be|must be|will be|can be|needs? to be"
-    r"|nicht|ohne|keine?|früher|ehemals|muss|müsste|soll|sollte|wird|non|pas|sans|jamais|autrefois|doit être|sera|senza|già"
-    r"|deve essere|sarà|no|sin|nunca|antes|debe ser|será|niet|zonder|moet|wordt|δεν|χωρίς|πρέπει να"
+    r"not|never|without|no longer|isn't|aren't|formerly|previously|once|to be|should be|must be|will be|can be"
+    r"|needs? to be|nicht|ohne|keine?|früher|ehemals|muss|müsste|soll|sollte|wird|non|pas|sans|jamais|autrefois|doit être|sera"
+    r"|senza|già|deve essere|sarà|no|sin|nunca|antes|debe ser|será|niet|zonder|moet|wordt|δεν|χωρίς|πρέπει να"
 )
 NO = re.compile(rf"\b(?:{_DENIED})\s+(?:\w+\s+)?$", re.IGNORECASE)
 """Before a thing that then is not there: "without felt", "no rubber"."""
