@@ -26,8 +26,9 @@ Way = TypeVar("Way", bound=StrEnum)
 
 _DENIED = (
     r"not|never|without|no longer|isn't|aren't|formerly|previously|once|to be|should be|must be|will be|can be"
-    r"|needs? to be|nicht|ohne|keine?|früher|ehemals|muss|müsste|soll|sollte|wird|non|pas|sans|jamais|autrefois|doit être|sera"
-    r"|senza|già|deve essere|sarà|no|sin|nunca|antes|debe ser|será|niet|zonder|moet|wordt|δεν|χωρίς|πρέπει να"
+    r"|needs? to be|nicht|ohne|keine?|früher|ehemals|muss|müsste|soll|sollte|wird|non|pas|sans|jamais|autrefois"
+    r"|doit être|sera|senza|già|deve essere|sarà|no|sin|nunca|antes|debe ser|será|niet|zonder|moet|wordt|δεν|χωρίς"
+    r"|πρέπει να"
 )
 NO = re.compile(rf"\b(?:{_DENIED})\s+(?:\w+\s+)?$", re.IGNORECASE)
 """Before a thing that then is not there: "without felt", "no rubber"."""
