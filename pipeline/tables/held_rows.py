@@ -24,7 +24,7 @@ class HeldWords(TableRow):
     Attributes
     ----------
     words : tuple of str
-        One of which stands in the text; * is up to three words.
+        One of which stands in the text; * is up to three words, and = before one that it is the whole text.
     support, hanging, furniture, anchorage, mount
         What they tell.
     source : str
@@ -58,6 +58,8 @@ def _rows() -> tuple[tuple[re.Pattern[str], HeldWords], ...]:
 
 
 def _pattern(word: str) -> str:
+    if word.startswith("="):
+        return rf"^\s*{re.escape(word[1:])}\s*$"
     # Chinese, Japanese and Korean part no words from each other.
     inner = re.escape(word).replace(r"\*", SOME_WORDS)
     return inner if _JOINED.search(word) else rf"(?<!\w){inner}(?!\w)"

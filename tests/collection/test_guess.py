@@ -406,3 +406,29 @@ def test_a_copy_of_some_tables_of_tms_is_joined(tmp_path: Path) -> None:
         "2001.6": (pytest.approx(0.762), None),
     }
     assert {item.gallery for item in items.values()} == {"Main, Gallery 5"}
+
+
+def test_words_for_how_things_are_held_are_given_their_meanings(tmp_path: Path) -> None:
+    path = tmp_path / "held.csv"
+    rows = (
+        "not fixed,on plinth",
+        "bolted,in showcase",
+        "Hung,",
+        "freestanding,to be bolted to floor",
+        "befestigt,",
+        "lose,shelf",
+    )
+    lines = (f"1.{at},Bust,marble,60,40,Room 1,{row}" for at, row in enumerate(rows))
+    head = "Inventory no,Title,Material,Height (cm),Width (cm),Room,Support,Display"
+    path.write_text("\n".join([head, *lines]), encoding="utf-8")
+    made = guess(path)
+    items = read_items(path, made.mapping).items
+    assert [item.support and item.support.value for item in items] == [
+        "freestanding",
+        "fastened",
+        "hung",
+        "freestanding",
+        "fastened",
+        "freestanding",
+    ]
+    assert any("'bolted' as fastened" in doubt for doubt in made.doubts)

@@ -35,6 +35,10 @@ MOST_WORDS = 30
 _ADDED = {("ft", "in"): 12.0, ("lb", "oz"): 16.0}
 """A greater and a lesser unit -> of the lesser in one of the greater."""
 
+_HELD = {"support": "support", "hanging": "hanging", "furniture": "furniture", "furniture_anchorage": "anchorage",
+         "mount": "mount"}  # fmt: skip
+"""Field of how a thing is held -> what the words for displays tell of it."""
+
 _NAMING = 0.5
 """Share of a column's texts that name a unit from which each is read with its own."""
 
@@ -165,6 +169,12 @@ def tells_display(column: Column) -> bool:
     return len(free) >= 0.5 * len(column.distinct) > 0 and any(told_by(text) != Told() for text in free)
 
 
+def _meant(name: str, text: str) -> str:
+    """Return what a text means of a vocabulary of how things are held; "" where it says nothing of that."""
+    found = getattr(told_by(text), _HELD.get(name, ""), None)
+    return "" if found is None else str(found.value)
+
+
 @dataclass
 class Fields:
     """Writes the section [columns] of a mapping.
@@ -269,15 +279,33 @@ class Fields:
         elif kind == "flag":
             return self._flag(name, column, entry)
         elif kind == "choice":
-            words = {one.value for one in CHOICES[name]}
-            if sum(text.casefold() in words for text in column.distinct) < 0.5 * len(column.distinct):
-                self._leave_out(name, column, f"in other words than {', '.join(sorted(words))}")
-                return None
+            return self._choice(name, column, entry)
         elif kind in ("number", "integer") and column.filled and not column.numeric:
             self.doubts.append(
                 f"column {column.name!r} is left out: it may be {name}, but most of its cells are no numbers"
             )
             return None
+        return entry
+
+    def _choice(self, name: str, column: Column, entry: tomlkit.items.Table) -> tomlkit.items.Table | None:
+        """Return the entry of words that are some of a vocabulary, or mean some of it."""
+        words = {one.value for one in CHOICES[name]}
+        texts = list({text.casefold(): text for text in reversed(column.distinct)}.values())[::-1]
+        said = {text: text.casefold() if text.casefold() in words else _meant(name, text) for text in texts}
+        unknown = [text for text, meaning in said.items() if not meaning]
+        if len(unknown) > 0.5 * len(said) or len(said) > MOST_WORDS:
+            self._leave_out(name, column, f"in other words than {', '.join(sorted(words))}")
+            return None
+        if any(meaning != text.casefold() for text, meaning in said.items() if meaning):
+            entry["values"] = values = tomlkit.inline_table()
+            for text, meaning in said.items():
+                if meaning:
+                    values[text] = meaning
+            told = ", ".join(f"{text!r} as {meaning}" for text, meaning in list(said.items())[:8] if meaning)
+            self.doubts.append(f"column {column.name!r} is read as {name.replace('_', ' ')}: {told}")
+        if unknown:
+            told = ", ".join(map(repr, unknown[:8]))
+            self.doubts.append(f"column {column.name!r}: what is meant by {told}? Add it to [columns.{name}] values")
         return entry
 
     def _leave_out(self, name: str, column: Column, why: str) -> None:
