@@ -167,6 +167,11 @@ def _words_of_display(found: dict[str, Column], told: GuessNotes) -> None:
     column = found.get("displayed")
     if column is not None and "displayed" not in told.choices and not tells_display(column):
         del found["displayed"]
+        if "on_display" not in {*found, *told.choices} and any(
+            flag_of(t, display=True) is not None for t in column.filled
+        ):
+            # "Displayed?" is answered by yes and no.
+            found["on_display"] = column
     mounts = found.get("support")
     if "displayed" not in found and mounts is not None and "support" not in told.choices and tells_display(mounts):
         found["displayed"] = found.pop("support")

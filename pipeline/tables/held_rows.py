@@ -41,7 +41,7 @@ class HeldWords(TableRow):
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class HeldAs:
     """What a text tells of how a thing is displayed; None for what it leaves open."""
 
     support: Support | None = None
@@ -72,7 +72,7 @@ def _says(pattern: re.Pattern[str], row: HeldWords, text: str) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def told_by(text: str) -> Told:
+def told_by(text: str) -> HeldAs:
     """Return what a text tells of how a thing is displayed.
 
     Parameters
@@ -82,11 +82,11 @@ def told_by(text: str) -> Told:
 
     Returns
     -------
-    Told
+    HeldAs
         Of each thing that which the first row of the table says whose words are there.
     """
     found = [row for pattern, row in _rows() if _says(pattern, row, text)] if text.strip() else []
     names = ("support", "hanging", "furniture", "anchorage", "mount")
-    return Told(
+    return HeldAs(
         **{name: next((one for row in found if (one := getattr(row, name)) is not None), None) for name in names}
     )

@@ -7,7 +7,7 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.analysis.told import as_displayed
 from pipeline.records import Anchorage, Furniture, Hanging, Item, Mount, Origin, Support
-from pipeline.tables.held_rows import Told, told_by
+from pipeline.tables.held_rows import HeldAs, told_by
 
 PLANE = Item("1", "Hall", object_name="aeroplane", title="Biplane", medium="wood, fabric", height_m=2.25,
              width_m=7.4, depth_m=6.6, mass_kg=390.0)  # fmt: skip
@@ -18,32 +18,32 @@ BUST = Item("3", "Hall", object_name="bust", medium="marble", height_m=0.68, wid
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ("suspended from ceiling by steel cables", Told(Support.SUSPENDED, None, Furniture.RAIL)),
-        ("hängt von der Decke", Told(Support.SUSPENDED, None, Furniture.RAIL)),
-        ("suspendu au plafond", Told(Support.SUSPENDED, None, Furniture.RAIL)),
-        ("screwed to the wall", Told(Support.HUNG, Hanging.FIXED)),
-        ("on wall with Velcro on a batten", Told(Support.HUNG, Hanging.FIXED)),
-        ("hung by chains from a picture rail", Told(Support.HUNG, Hanging.WIRE)),
-        ("an der Wand", Told(Support.HUNG)),
-        ("on a wall bracket", Told(Support.FREESTANDING, None, Furniture.SHELF)),
-        ("strapped to a steel brace at its back", Told(Support.FASTENED, None, None, None, Mount.SECURED)),
-        ("fixed in a concrete footing", Told(Support.FASTENED)),
-        ("on plate stand on shelf", Told(Support.FREESTANDING, None, Furniture.SHELF, None, Mount.LEANING)),
-        ("apoyado en la pared", Told(Support.FREESTANDING, None, None, None, Mount.LEANING)),
-        ("posé sur un socle en marbre", Told(Support.FREESTANDING, None, Furniture.PEDESTAL)),
-        ("Case 12, glass shelf 3", Told(None, None, Furniture.SHOWCASE)),
-        ("in drawer", Told(None, None, None, None, Mount.LYING)),
-        ("standing on a mannequin with wooden base", Told(Support.FREESTANDING)),
-        ("lying in showcase", Told(None, None, Furniture.SHOWCASE, None, Mount.LYING)),
-        ("bust standing loose on its column", Told(Support.FREESTANDING, None, Furniture.PEDESTAL,
+        ("suspended from ceiling by steel cables", HeldAs(Support.SUSPENDED, None, Furniture.RAIL)),
+        ("hängt von der Decke", HeldAs(Support.SUSPENDED, None, Furniture.RAIL)),
+        ("suspendu au plafond", HeldAs(Support.SUSPENDED, None, Furniture.RAIL)),
+        ("screwed to the wall", HeldAs(Support.HUNG, Hanging.FIXED)),
+        ("on wall with Velcro on a batten", HeldAs(Support.HUNG, Hanging.FIXED)),
+        ("hung by chains from a picture rail", HeldAs(Support.HUNG, Hanging.WIRE)),
+        ("an der Wand", HeldAs(Support.HUNG)),
+        ("on a wall bracket", HeldAs(Support.FREESTANDING, None, Furniture.SHELF)),
+        ("strapped to a steel brace at its back", HeldAs(Support.FASTENED, None, None, None, Mount.SECURED)),
+        ("fixed in a concrete footing", HeldAs(Support.FASTENED)),
+        ("on plate stand on shelf", HeldAs(Support.FREESTANDING, None, Furniture.SHELF, None, Mount.LEANING)),
+        ("apoyado en la pared", HeldAs(Support.FREESTANDING, None, None, None, Mount.LEANING)),
+        ("posé sur un socle en marbre", HeldAs(Support.FREESTANDING, None, Furniture.PEDESTAL)),
+        ("Case 12, glass shelf 3", HeldAs(None, None, Furniture.SHOWCASE)),
+        ("in drawer", HeldAs(None, None, None, None, Mount.LYING)),
+        ("standing on a mannequin with wooden base", HeldAs(Support.FREESTANDING)),
+        ("lying in showcase", HeldAs(None, None, Furniture.SHOWCASE, None, Mount.LYING)),
+        ("bust standing loose on its column", HeldAs(Support.FREESTANDING, None, Furniture.PEDESTAL,
                                                    Anchorage.UNANCHORED)),
-        ("on wooden floor", Told(Support.FREESTANDING, None, Furniture.FLOOR)),
-        ("in showcase", Told(None, None, Furniture.SHOWCASE)),
-        ("third floor, room 3", Told()),
-        ("", Told()),
+        ("on wooden floor", HeldAs(Support.FREESTANDING, None, Furniture.FLOOR)),
+        ("in showcase", HeldAs(None, None, Furniture.SHOWCASE)),
+        ("third floor, room 3", HeldAs()),
+        ("", HeldAs()),
     ],
 )  # fmt: skip
-def test_words_of_display(words: str, told: Told) -> None:
+def test_words_of_display(words: str, told: HeldAs) -> None:
     assert told_by(words) == told
 
 

@@ -79,7 +79,7 @@ def test_what_is_not_on_display_is_counted_and_named_and_nothing_else(tmp_path: 
     assert objects == {"1": ("act", "true"), "2": left, "3": left, "4": left}
     for page in ("index.html", "not-on-display.html"):
         assert "3 objects are not on display, and were not assessed." in words(summary, page)
-        assert "set stores = true in [display]" in words(summary, page)
+        assert "stores = true in [display] of the settings" in words(summary, page)
     said = "not on display: 3 objects, not assessed (set [display] stores = true)"
     assert said in "\n".join(summary_lines(summary))
     assert "none is left out" not in words(summary)

@@ -313,7 +313,9 @@ def test_what_stands_there_and_what_was_made_of_it(tmp_path: Path) -> None:
         for row in html.parse(str(page)).getroot().findall(".//table[@class='doubts']/tbody/tr")
     ]
     assert made[:2] == ["taken so", "no object was made of it"]
-    assert sorted(made[2:]) == sorted(["0.3 m", "not used", "on display", "height 0.2 m, width 0.2 m, depth 0.2 m"])
+    # The page says it in the museum's units, the file in SI.
+    shown = sorted(one.replace("\u202f", " ") for one in made[2:])
+    assert shown == sorted(["30 cm", "not used", "on display", "height 20 cm, width 20 cm, depth 20 cm"])
     told = json.loads(index.with_name("summary.json").read_text(encoding="utf-8"))["reading"]
     assert [one["field"] for one in told["choices"]] == ["on_display"]
     (looked,) = [one for one in diagnose(tmp_path / "kouros.toml") if one.what == "inventory"]

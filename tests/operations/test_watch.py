@@ -87,7 +87,7 @@ def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch:
     # Whether a night was due and never began, this page cannot know: it says when the last one ended.
     assert "failed since" not in landing(folder)
     ended = datetime.fromisoformat(standing(folder)["since"])
-    assert f"that of the last run, which ended at {ended:%Y-%m-%d %H:%M} UTC" in landing(folder)
+    assert f"The last run ended at {ended:%Y-%m-%d %H:%M} UTC" in landing(folder)
     assert kouros("report").returncode == 0
     # Rendered again: the same run, in another folder, with the time that is known of it.
     again = standing(folder)["last_good"]

@@ -17,7 +17,7 @@ from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.collection.sources.rows import TypedNumber
-from pipeline.tables.held_rows import Told, told_by
+from pipeline.tables.held_rows import HeldAs, told_by
 
 FEWEST = 5
 """Numbers in eighths or sixteenths from which a column is taken to be in inches."""
@@ -166,7 +166,7 @@ def tells_display(column: Column) -> bool:
     vocabulary = {one.value for one in CHOICES["support"]}
     some = [text for text in column.distinct if flag_of(text, display=True) is None]
     free = [text for text in some if text.casefold() not in vocabulary]
-    return len(free) >= 0.5 * len(column.distinct) > 0 and any(told_by(text) != Told() for text in free)
+    return len(free) >= 0.5 * len(column.distinct) > 0 and any(told_by(text) != HeldAs() for text in free)
 
 
 def _meant(name: str, text: str) -> str:
