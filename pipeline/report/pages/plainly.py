@@ -71,7 +71,7 @@ def brief_measure(advice: Recommendation, units: Units) -> str:
     """
     told, _numbers = _advised(advice, units)
     if NAMED_FIRST in advice.sentence:
-        told.append(_("Before that, say what it is."))
+        told.append(_("Before that, say which of the kinds named in its entry it is."))
     elif any(one in advice.sentence for one in (HEAVIEST, AT_BEST, SIZED)):
         told.append(_("Weigh it first."))
     return " ".join(told)
