@@ -245,3 +245,10 @@ def test_of_a_single_level_the_summary_counts_the_objects_themselves() -> None:
 
 def test_what_people_settled_comes_after_what_nobody_looked_at_and_before_what_is_to_be_watched() -> None:
     assert urgency(_likely("1", 0.9)) < urgency(_likely("0", 0.95), settled=True) < urgency(_likely("2", 0.05))
+
+
+def test_a_loss_beyond_all_numbers_is_the_most_urgent() -> None:
+    usual = _likely("1", 0.9)
+    scene = usual.scene
+    beyond = replace(usual, scene=replace(scene, item=replace(scene.item, value=float("inf"))))
+    assert urgency(beyond) < urgency(usual)

@@ -20,6 +20,9 @@ _GRAVER = 1e6
 _ALIKE = log1p(0.01)
 """Losses are told apart by steps of a hundredth: finer than that no sample tells them."""
 
+_MOST = 1e300
+"""Loss from which on all are alike: of numbers that no record may have, a product may be no number."""
+
 _ORDER = tuple(State)
 _JUDGED = {Verdict.FAIL: Judged.FAILS, Verdict.UNDETERMINED: Judged.OPEN, Verdict.PASS: Judged.PASSES}
 _SIZES = tuple(Judged)
@@ -87,7 +90,7 @@ def urgency(assessment: Assessment, *, settled: bool = False) -> Urgency:
         _ORDER.index(state_of(assessment)),
         settled,
         to_check(assessment),
-        inf if loss <= 0.0 else float(-round(log(loss) / _ALIKE)),
+        inf if loss <= 0.0 else float(-round(log(min(loss, _MOST)) / _ALIKE)),
         ease,
         -size,
         encodable(item.object_number),
