@@ -35,9 +35,8 @@ MOST_WORDS = 30
 _ADDED = {("ft", "in"): 12.0, ("lb", "oz"): 16.0}
 """A greater and a lesser unit -> of the lesser in one of the greater."""
 
-_HELD = {"support": "support", "hanging": "hanging", "furniture": "furniture", "furniture_anchorage": "anchorage",
-         "mount": "mount"}  # fmt: skip
-"""Field of how a thing is held -> what the words for displays tell of it."""
+_HELD = {"furniture_anchorage": "anchorage"}
+"""Field of how a thing is held -> what the words for displays tell of it, where that has another name."""
 
 _NAMING = 0.5
 """Share of a column's texts that name a unit from which each is read with its own."""
@@ -171,7 +170,7 @@ def tells_display(column: Column) -> bool:
 
 def _meant(name: str, text: str) -> str:
     """Return what a text means of a vocabulary of how things are held; "" where it says nothing of that."""
-    found = getattr(told_by(text), _HELD.get(name, ""), None)
+    found = getattr(told_by(text), _HELD.get(name, name), None)
     return "" if found is None else str(found.value)
 
 

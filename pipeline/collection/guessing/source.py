@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from contextlib import ExitStack, closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import islice
@@ -158,33 +158,35 @@ def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
     if kind != "json":
         return {"format": kind}
     file = json_files(path, deep=True)[0] if path.is_dir() else path
-    try:
-        with file.open("rb") as packed, closing(unpacked(packed, file.name, STANDARD.bytes)) as binary:
-            _, first = next(read_values(binary, file.name, exact=True), (0, None))
-    except OSError as problem:
-        raise unreadable(file, problem) from problem
+    with _unpacked(file) as binary:
+        _, first = next(read_values(binary, file.name, exact=True), (0, None))
     where = told.choices.get("records", list_in(first))
     if where:
         told.sure.append(f"objects are listed as {where!r}")
     return {"format": "json"} | ({"records": where} if where else {})
 
 
-def _xml_files(path: Path, stack: ExitStack) -> Iterator[tuple[str, BinaryIO]]:
+@contextmanager
+def _unpacked(file: Path) -> Iterator[BinaryIO]:
+    try:
+        with file.open("rb") as packed, closing(unpacked(packed, file.name, STANDARD.bytes)) as binary:
+            yield binary
+    except OSError as problem:
+        raise unreadable(file, problem) from problem
+
+
+def _xml_files(path: Path) -> Iterator[tuple[str, BinaryIO]]:
     if path.is_dir():
         yield from Folder(path, XML_FILES, STANDARD.bytes).each()
         return
-    try:
-        packed = stack.enter_context(path.open("rb"))
-        yield path.name, stack.enter_context(closing(unpacked(packed, path.name, STANDARD.bytes)))
-    except OSError as problem:
-        raise unreadable(path, problem) from problem
+    with _unpacked(path) as binary:
+        yield path.name, binary
 
 
 def _xml_records(path: Path, told: GuessNotes) -> str:
     where = told.choices.get("records", "")
     if not where:
-        with ExitStack() as stack:
-            at, others = record_path(partial(_xml_files, path, stack), path.name)
+        at, others = record_path(partial(_xml_files, path), path.name)
         where = "/".join(at)
         if others:
             told.doubts.append(

@@ -12,7 +12,7 @@ from zipfile import ZipFile
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.workbook import COLUMN_LIMIT, RANGE_LIMIT, ROW_NUMBER_LIMIT, SAVE_AGAIN, Survey
-from pipeline.collection.sources.xml_records import local_name, safely_parsed
+from pipeline.collection.sources.xml_records import forget, local_name, safely_parsed
 
 CONTENT = "content.xml"
 """The part with all sheets."""
@@ -84,7 +84,7 @@ class OpenBook:
                     out.append(OpenPage(self._archive, self._file, len(out), name, state))
                 elif event == "end":
                     if element.tag == f"{_TABLE}table-row":
-                        _forget(element)
+                        forget(element)
                     elif any(one.get(f"{_TABLE}display") == "false" for one in element):
                         hidden.add(element.get(f"{_STYLE}name"))
         return out
@@ -178,16 +178,10 @@ class OpenPage:
                     for place in islice(range(line + 1, line + many + 1), many if told else 0):
                         yield place, cells
                     line += many
-                _forget(element)
+                forget(element)
 
     def _refused(self, what: str) -> CollectionError:
         return CollectionError(f"{self.file}: the sheet {self.title!r} {what}; {SAVE_AGAIN}")
-
-
-def _forget(row: Any) -> None:
-    row.clear()
-    while (before := row.getprevious()) is not None:
-        row.getparent().remove(before)
 
 
 def _outermost(table: Any) -> bool:
@@ -199,17 +193,19 @@ def _no_doctype(element: Any, file: str) -> None:
         raise CollectionError(f"{file}: holds a document type declaration, which no workbook needs; {SAVE_AGAIN}")
 
 
-def _repeated(element: Any, what: str) -> int:
-    said = element.get(f"{_TABLE}number-{what}-repeated", "1")
+def _count(element: Any, attribute: str) -> int:
+    said = element.get(f"{_TABLE}number-{attribute}", "1")
     return max(1, int(said)) if said.isdecimal() and len(said) < 8 else 1
+
+
+def _repeated(element: Any, what: str) -> int:
+    return _count(element, f"{what}-repeated")
 
 
 def _spans(element: Any, what: str) -> tuple[int, int]:
     """Return over how many rows and columns a cell goes: "spanned" where it is merged, "matrix" its formula."""
     infix = "" if what == "spanned" else "matrix-"
-    said = [element.get(f"{_TABLE}number-{infix}{way}-spanned", "1") for way in ("rows", "columns")]
-    down, across = (max(1, int(one)) if one.isdecimal() and len(one) < 8 else 1 for one in said)
-    return down, across
+    return _count(element, f"{infix}rows-spanned"), _count(element, f"{infix}columns-spanned")
 
 
 def _holds(element: Any) -> bool:

@@ -30,7 +30,15 @@ from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.collection.sources.measurements import NUMBER, MeasuredSettings
 from pipeline.collection.sources.nested import is_measurement, object_rows
 from pipeline.collection.sources.rows import Row
-from pipeline.collection.sources.xml_records import EXPORT_AGAIN, XML_FILES, XmlRecords, local_name, safely_parsed
+from pipeline.collection.sources.xml_records import (
+    EXPORT_AGAIN,
+    XML_FILES,
+    XmlRecords,
+    forget,
+    local_name,
+    refusing,
+    safely_parsed,
+)
 
 LOOKED_AT = 200_000
 """Elements from which it is told which of them are the objects."""
@@ -181,7 +189,7 @@ def record_path(files: Files, name: str) -> tuple[Path, list[str]]:
     found = _Tally()
     for file, binary in files():
         _tally(found, binary, file)
-        if sum(found.count.values()) >= LOOKED_AT:
+        if found.enough:
             break
     path = (_FILEMAKER, "RESULTSET", "ROW") if found.root == _FILEMAKER else _likeliest(found, name)
     others = [
@@ -220,12 +228,13 @@ def _likeliest(found: _Tally, file: str) -> Path:
 class _Tally:
     """What is known of the elements of a file by their places.
 
-    files : how many there are;  root : name of the first element of the last;  count : how many there are
+    files, seen : how many there are, and how many elements of them were looked at
+    root : name of the first element of the last;  count : how many there are
     said : texts and attributes within them;  names : of what is right within them
     """
 
     def __init__(self) -> None:
-        self.files = 0
+        self.files = self.seen = 0
         self.root = ""
         self.count: Counter[Path] = Counter()
         self.said: Counter[Path] = Counter()
@@ -242,6 +251,10 @@ class _Tally:
         for depth in range(1, len(path) + 1) if said else ():
             self.said[path[:depth]] += said
 
+    @property
+    def enough(self) -> bool:
+        return self.seen >= LOOKED_AT or len(self.count) > MOST_PATHS
+
     def several(self) -> list[Path]:
         """Return the places of which there are several elements, each of which says more than one thing."""
         # The outermost element of a file is an object where each file has one.
@@ -252,38 +265,21 @@ class _Tally:
 
 
 def _tally(found: _Tally, binary: BinaryIO, file: str) -> None:
-    from lxml import etree
-
     path = list[str]()
     found.files += 1
-    events = safely_parsed(binary)
-    seen = 0
-    try:
-        for event, element in events:
-            if event == "start":
-                path.append(local_name(element))
-                if len(path) == 1:
-                    found.root = path[0]
-                    if element.getroottree().docinfo.doctype:
-                        raise CollectionError(
-                            f"{file}: declares a document type or entities, which objects never need and can hide "
-                            "harm; remove the line that begins with <!DOCTYPE"
-                        )
-                continue
-            if not str(element.tag).startswith(_SCHEMA):
-                found.take(tuple(path), element)
-            path.pop()
-            # What was looked at goes, but for the last of each level, so that its parent is known to have had some.
-            element.clear(keep_tail=False)
-            while (before := element.getprevious()) is not None:
-                element.getparent().remove(before)
-            seen += 1
-            if seen >= LOOKED_AT or len(found.count) > MOST_PATHS:
-                break
-    except etree.XMLSyntaxError as problem:
-        raise CollectionError(
-            f"{file}, line {problem.lineno or 1}: not well-formed XML: {str(problem)[:200]}; {EXPORT_AGAIN}"
-        ) from problem
+    for event, element in refusing(safely_parsed(binary), file, "record"):
+        if event == "start":
+            path.append(local_name(element))
+            found.root = path[0]
+            continue
+        found.seen += 1
+        if not str(element.tag).startswith(_SCHEMA):
+            found.take(tuple(path), element)
+        path.pop()
+        # The last of each level stays, emptied, so that its parent is known to have had some.
+        forget(element)
+        if found.enough:
+            break
 
 
 def _innermost(path: Path, found: _Tally) -> Path:
@@ -367,17 +363,21 @@ def _texted(text: str, told: dict[str, Any]) -> Any:
 
 
 def _put(into: dict[str, Any], name: str, value: Any, element: Any) -> None:
-    """Add what an element says to what its parent says; measurements, and what comes twice, become a list."""
-    measured = is_measurement(value)
+    """Add what an element says to what its parent says, and beside a text what its attributes say."""
+    _add(into, name, value)
+    if isinstance(value, str) and value:
+        for attribute, said in _attributes(element).items():
+            if said != name and not value.endswith(f" {said}"):
+                _add(into, f"{name}@{attribute}", said)
+
+
+def _add(into: dict[str, Any], name: str, value: Any) -> None:
+    """Add a value by its name; measurements, and what comes twice, become a list."""
     if name in into:
         before = into[name] if isinstance(into[name], list) else [into[name]]
         into[name] = [*before, value]
     else:
-        into[name] = [value] if measured else value
-    if isinstance(value, str) and value:
-        for attribute, said in _attributes(element).items():
-            if said != name and not value.endswith(f" {said}"):
-                _put(into, f"{name}@{attribute}", said, element.makeelement("none"))
+        into[name] = [value] if is_measurement(value) else value
 
 
 def _attributes(element: Any) -> dict[str, Any]:

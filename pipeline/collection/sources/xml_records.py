@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, BinaryIO
 
@@ -80,32 +80,15 @@ class XmlRecords:
         CollectionError
             For a file that is damaged, incomplete, without a record, or declares a document type.
         """
-        from lxml import etree
-
         bounded = _Bounded(stream, self.file, self.what)
         events = safely_parsed(bounded, [tag for tag in (self.tag, self.also) if tag])
         seen = 0
-        while True:
-            try:
-                event, element = next(events)
-            except StopIteration:
-                break
-            except etree.XMLSyntaxError as problem:
-                raise CollectionError(
-                    f"{self.file}, line {problem.lineno or 1}: not well-formed XML after {seen} records: "
-                    f"{str(problem)[:200]}; {EXPORT_AGAIN}"
-                ) from problem
-            except OSError as problem:
-                raise CollectionError(
-                    f"{self.file}: reading stopped after {seen} records: {problem.strerror or problem}; see whether "
-                    "the disk or the network share is there and import again"
-                ) from problem
+
+        def reached() -> str:
+            return f" after {seen} records"
+
+        for event, element in refusing(events, self.file, self.what, reached):
             if event == "start":
-                if element.getroottree().docinfo.doctype:
-                    raise CollectionError(
-                        f"{self.file}: declares a document type or entities, which a {self.what} never needs and can "
-                        "hide harm; remove the line that begins with <!DOCTYPE"
-                    )
                 continue
             if self.also and element.tag == self.also:
                 yield element
@@ -120,7 +103,7 @@ class XmlRecords:
             seen += 1
             yield element
             bounded.since_record = 0
-            _forget(element)
+            forget(element)
         if not seen:
             root = events.root.tag if events.root is not None else "nothing"
             raise CollectionError(f"{self.file}: {self.none.format(root=root[:100])}")
@@ -156,6 +139,53 @@ def safely_parsed(stream: Any, tags: Sequence[str] | None = None) -> Any:
     )
 
 
+def refusing(events: Any, file: str, what: str, reached: Callable[[], str] = lambda: "") -> Iterator[tuple[str, Any]]:
+    """Yield the events of an XML file, and say of what cannot be read or would be dangerous what it is.
+
+    Parameters
+    ----------
+    events : lxml.etree.iterparse
+        Of starts and ends, as `safely_parsed` gives them.
+    file, what : str
+        Its name and what it holds, in messages.
+    reached : callable
+        Says how far the reading came.
+
+    Yields
+    ------
+    (str, lxml element)
+        "start" or "end", and whose.
+
+    Raises
+    ------
+    CollectionError
+        For a file that is damaged or incomplete, or declares a document type.
+    """
+    from lxml import etree
+
+    while True:
+        try:
+            event, element = next(events)
+        except StopIteration:
+            return
+        except etree.XMLSyntaxError as problem:
+            raise CollectionError(
+                f"{file}, line {problem.lineno or 1}: not well-formed XML{reached()}: {str(problem)[:200]}; "
+                f"{EXPORT_AGAIN}"
+            ) from problem
+        except OSError as problem:
+            raise CollectionError(
+                f"{file}: reading stopped{reached()}: {problem.strerror or problem}; see whether the disk or the "
+                "network share is there and import again"
+            ) from problem
+        if event == "start" and element.getroottree().docinfo.doctype:
+            raise CollectionError(
+                f"{file}: declares a document type or entities, which a {what} never needs and can hide harm; remove "
+                "the line that begins with <!DOCTYPE"
+            )
+        yield event, element
+
+
 def local_name(element: Any) -> str:
     """Return the name of an element without its namespace."""
     return str(element.tag).rpartition("}")[2]
@@ -166,7 +196,8 @@ def path_of(element: Any) -> tuple[str, ...]:
     return (*(local_name(above) for above in reversed([*element.iterancestors()])), local_name(element))
 
 
-def _forget(element: Any) -> None:
+def forget(element: Any) -> None:
+    """Empty an element that ended, and take away all that stands before it and before those around it."""
     element.clear()
     for place in (element, *element.iterancestors()):
         while (before := place.getprevious()) is not None:
