@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import re
 import shutil
+import socket
 import subprocess
 import sys
+import tarfile
 import tomllib
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import closing, suppress
+from http.client import HTTPConnection
 from pathlib import Path
+from time import sleep
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
 
 import pytest
 import yaml
@@ -122,17 +130,92 @@ def test_a_night_needs_none_of_the_extras(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.skipif(TOOL is None, reason="neither podman nor docker works here: the image is read, not built")
-def test_the_image_is_built_and_runs(tmp_path: Path) -> None:
+def run_options(volumes: Mapping[str, str], environment: Mapping[str, str]) -> list[str]:
+    """Return with which options a tool runs the service of the night as the compose file has it.
+
+    volumes     : what is mounted besides, or in place of a named volume: by its path in the container
+    environment : what the compose file takes from its neighbours
+    """
+    service = SERVICES["services"]["night"]
+    named = {path: f"kouros-test-{name}" for name, _, path in (one.partition(":") for one in service["volumes"])}
+    mounted = [f"--volume={source}:{path}" for path, source in {**named, **volumes}.items()]
+    told = [f"--env={name}={value}" for name, value in {**service["environment"], **environment}.items()]
+    small = [f"--tmpfs={path}" for path in service["tmpfs"]]
+    dropped = [f"--cap-drop={name}" for name in service["cap_drop"]]
+    return [*(["--read-only"] if service["read_only"] else []), *small, *dropped, *mounted, *told]
+
+
+@pytest.fixture
+def tool(tmp_path: Path) -> Iterator[str]:
+    """The container tool, which has built the image from a wheel of this tree."""
     assert TOOL is not None
     shutil.copy(EXAMPLES / "Containerfile", tmp_path)
-    subprocess.run(
-        [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(tmp_path), str(ROOT)],
-        check=True,
-    )
-    subprocess.run([TOOL, "build", "--tag", "kouros-test", "--file", "Containerfile", "."], cwd=tmp_path, check=True)
+    wheel = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(tmp_path), str(ROOT)]
+    subprocess.run(wheel, check=True)
     try:
-        for words in (["--version"], ["init"], ["check", "--help"], ["serve", "--help"]):
-            subprocess.run([TOOL, "run", "--rm", "kouros-test", *words], check=True)
+        subprocess.run(
+            [TOOL, "build", "--tag", "kouros-test", "--file", "Containerfile", "."], cwd=tmp_path, check=True
+        )
+        yield TOOL
     finally:
-        subprocess.run([TOOL, "image", "rm", "kouros-test"], check=False)
+        subprocess.run([TOOL, "volume", "rm", "--force", "kouros-test-museum", "kouros-test-cache"], check=False)
+        subprocess.run([TOOL, "image", "rm", "--force", "kouros-test"], check=False)
+
+
+@pytest.mark.skipif(TOOL is None, reason="neither podman nor docker works here: the image is read, not built")
+def test_the_image_is_built_and_does_a_night_and_serves_the_desk(
+    tool: str, tmp_path: Path, postgresql_url: str
+) -> None:
+    """As the compose file runs it: without rights, on a root that cannot be written, on a real PostgreSQL server."""
+    # The socket alone is mounted: PostgreSQL keeps the folder around it to itself.
+    folder = dict(parse_qsl(urlsplit(postgresql_url).query))["host"]
+    (door,) = (one for one in Path(folder).glob(".s.PGSQL.*") if one.is_socket())
+    address = postgresql_url.replace(folder, "/run/database")
+    options = run_options({f"/run/database/{door.name}": str(door)}, {"KOUROS_DATABASE": address})
+
+    def run(*words: str, entry: str = "", **more: Any) -> subprocess.CompletedProcess[str]:
+        entries = [f"--entrypoint={entry}"] if entry else []
+        done = [tool, "run", "--rm", "--interactive", *options, *entries, "kouros-test", *words]
+        return subprocess.run(done, check=False, capture_output=True, **more)
+
+    home = words_of("VOLUME")[0]
+    made = run("init", text=True)
+    assert made.returncode == 0, made.stderr
+    workspace(tmp_path / "museum")
+    files = io.BytesIO()
+    with tarfile.open(fileobj=files, mode="w") as packed:
+        for name in ("export.csv", "mapping.toml", "kouros.toml", "brief"):
+            packed.add(tmp_path / "museum" / name, name)
+    put = run("--extract", "--no-same-owner", "--directory", home, entry="tar", input=files.getvalue())
+    assert put.returncode == 0, put.stderr
+    checked = run("check", text=True)
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+    # The first night compiles into the volume; the second finds all of that, and nothing that changed.
+    for night in ("first", "second"):
+        done = run(*COMMANDS["night"], text=True)
+        assert done.returncode == 0, (night, done.stderr)
+        # Who collects the log of a container reads JSON alone, whatever a library would say of a root to be read only.
+        assert all(line.startswith("{") and json.loads(line) for line in done.stderr.splitlines()), done.stderr
+    assert run("-f", f"{home}/reports/latest/index.html", entry="test", text=True).returncode == 0
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    desk = [tool, "run", "--rm", "--name=kouros-test-desk", "--network=host", *options, "kouros-test"]
+    with subprocess.Popen([*desk, "serve", "--port", str(port)], stderr=subprocess.PIPE, text=True) as serving:
+        try:
+            page = front_page(port, serving)
+        finally:
+            subprocess.run([tool, "stop", "--time=5", "kouros-test-desk"], check=False, capture_output=True)
+    assert "<title>" in page
+    assert "Test" in page
+
+
+def front_page(port: int, serving: subprocess.Popen[str]) -> str:
+    """Return the first page of a desk that is being started, within a minute."""
+    for _ in range(120):
+        assert serving.poll() is None, serving.stderr and serving.stderr.read()
+        with suppress(OSError), closing(HTTPConnection("127.0.0.1", port, timeout=10)) as desk:
+            desk.request("GET", "/")
+            return desk.getresponse().read().decode("utf-8")
+        sleep(0.5)
+    raise AssertionError(f"nothing answers at port {port}")
