@@ -67,15 +67,19 @@ def _gap_and_room(
 
 
 @inner
-def _outline(ax: Array, ay: Array, n: int, length: int, outline: Array) -> None:
-    # Of each stretch of the excitation what the columns of outline say; both have a sample more than n.
-    outline[:] = 0.0
-    for i in range(n - 1):
-        row = outline[i // length]
-        row[LONGEST] = max(row[LONGEST], math.hypot(ax[i], ay[i]), math.hypot(ax[i + 1], ay[i + 1]))
-        row[STEEPEST] = max(row[STEEPEST], math.hypot(ax[i + 1] - ax[i], ay[i + 1] - ay[i]))
-        bend_x, bend_y = ax[i + 2] - 2.0 * ax[i + 1] + ax[i], ay[i + 2] - 2.0 * ay[i + 1] + ay[i]
-        row[SHARPEST] = max(row[SHARPEST], math.hypot(bend_x, bend_y))
+def _outline(ax: Array, ay: Array, push: Array, n: int, length: int, outline: Array) -> None:
+    # Of each stretch of the excitation what the columns of outline say; all have a sample more than n.
+    for part in range(outline.shape[0]):
+        begin = part * length
+        longest, steepest, sharpest = push[begin], 0.0, 0.0
+        for i in range(begin, min(n - 1, begin + length)):
+            longest = max(longest, push[i + 1])
+            rise_x, rise_y = ax[i + 1] - ax[i], ay[i + 1] - ay[i]
+            bend_x, bend_y = ax[i + 2] - ax[i + 1] - rise_x, ay[i + 2] - ay[i + 1] - rise_y
+            steepest = max(steepest, rise_x * rise_x + rise_y * rise_y)
+            sharpest = max(sharpest, bend_x * bend_x + bend_y * bend_y)
+        row = outline[part]
+        row[LONGEST], row[STEEPEST], row[SHARPEST] = longest, math.sqrt(steepest), math.sqrt(sharpest)
 
 
 @inner
@@ -221,7 +225,6 @@ def _search(
     # Of one span, once for all: a stiff oscillator has hundreds of them in a sample interval.
     span = dt / spans
     g, h, h1, h2 = transition(w, zeta, span)
-    # Roots of squares, as the lanes have them: hypot costs five times as much, and this is walked often.
     size = math.sqrt(ux * ux + uy * uy)
     for s in range(begin, end):
         x0, x1, y0, y1 = ax[s], ax[s + 1], ay[s], ay[s + 1]
@@ -233,7 +236,9 @@ def _search(
         if near + stretch[part, GAP, k] >= known[SIZE] and longest + stretch[part, ROOM, k] >= b * known[SIZE]:
             energy = interval_energy(x0 + (c * vx + b * ux), vx, x1 - x0, w, twice, ramp)
             energy += interval_energy(y0 + (c * vy + b * uy), vy, y1 - y0, w, twice, ramp)
-            gap, room = _gap_and_room(math.sqrt(energy), math.hypot(x1 - x0, y1 - y0), dt, twice, ramp, norm)
+            gap, room = _gap_and_room(
+                math.sqrt(energy), math.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2), dt, twice, ramp, norm
+            )
             if near + gap >= known[SIZE] and longest + room >= b * known[SIZE]:
                 rise_x, rise_y = (x1 - x0) / dt, (y1 - y0) / dt
                 gap_here = gap / (spans * spans)
@@ -318,11 +323,12 @@ def resultant_batch(
     ax[n], ay[n] = base_x[n - 1], base_y[n - 1]
     length = CHUNK * ((n - 2) // (CHUNK * STRETCHES) + 1)
     parts = (n - 2) // length + 1
+    # Roots of squares, here and below, as the lanes have them: hypot costs five times as much.
     push = np.empty(n + 1)
     for i in range(n + 1):
-        push[i] = math.hypot(ax[i], ay[i])
+        push[i] = math.sqrt(ax[i] * ax[i] + ay[i] * ay[i])
     outline, stretch, known = np.empty((parts, 3)), np.empty((parts, 7, LANES)), np.empty(3)
-    _outline(ax, ay, n, length, outline)
+    _outline(ax, ay, push, n, length, outline)
     factor, state = lanes(FACTORS), lanes(STATES)
     for begin in range(FIRST, m, LANES):
         end = min(begin + LANES, m)
