@@ -20,14 +20,17 @@ import numpy as np
 
 from pipeline.motions.formats import blocks, header_facts, irregular, labels, record_text, trace_headers
 from pipeline.motions.formats.labels import HeadColumn, RecordHead
-from pipeline.motions.formats.record_text import Lines, Source, shown
+from pipeline.motions.formats.record_text import FormatError, Lines, Source, shown
 from pipeline.quantities import Array
 
 _NUMBER = re.compile(r"^[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[Ee][+-]?\d{1,3})?$")
+_FORTRAN = str.maketrans("Dd", "Ee", '"')
+_COUNTER = re.compile(rb"\s(\d{1,7})\s*$")
 _MOMENT = re.compile(r"^(\d{4})[-/](\d\d)[-/](\d\d)[T ](\d\d):(\d\d):(\d\d(?:\.\d{1,9})?)(Z?)$")
 _TOUCHING = re.compile(r"(?<=\d)(?=[+-]\d*\.)")
 _DECIMAL = re.compile(r"(?<=\d),(?=\d)")
 _LEAST_ROWS, _MOST_COLUMNS, _MOST_HEAD = 5, 20, 200
+_CONVERT = "kouros motions convert FILE --columns ns --dt 0.01 --unit g --out FOLDER"
 _BARE = 4
 """Most columns of a table that nothing names."""
 
@@ -47,16 +50,17 @@ def is_format(source: Source) -> bool:
     top = _top(lines)
     if top is None or len(lines) - top < _LEAST_ROWS:
         return False
+    lines = _uncounted(lines, top)
     try:
         block, start = _layout(lines, top, whole=whole)
         _step(lines, start, block)
-    except record_text.FormatError:
+    except FormatError:
         return False
     return not any(import_module(f"{__package__}.{name}").is_format(source) for name in _OTHERS)
 
 
 def series(lines: Lines) -> tuple[Array, int, int] | None:
-    """Return all numbers of a file in a row, whatever head it has.
+    """Return all numbers of a file in a row, whatever head it has, without those that count its rows.
 
     Parameters
     ----------
@@ -77,9 +81,51 @@ def series(lines: Lines) -> tuple[Array, int, int] | None:
     top = _top(lines)
     if top is None:
         return None
+    lines = _uncounted(lines, top)
     form = _form(lines.text(top))
     width = len(_cells(lines, top, form))
     return _values(lines, top, form, width)[0], top, width
+
+
+def refused(file: str) -> FormatError | None:
+    """Return why the numbers of a file are no record, where rows of numbers are all that follows its head.
+
+    Parameters
+    ----------
+    file : str
+        A text file that no reader knows.
+
+    Returns
+    -------
+    FormatError or None
+        Naming what is not said, with the remedy; None for what holds no such rows.
+    """
+    try:
+        lines = record_text.open_lines(file)
+        if series(lines) is None:
+            return None
+    except (FormatError, OSError):
+        return None
+    try:
+        _traces(lines, headonly=True)
+    except FormatError as problem:
+        return problem
+    return None
+
+
+def _uncounted(lines: Lines, top: int) -> Lines:
+    """The same without the numbers of the rows, where each ends in its own, as in files for SHAKE (8F9.6, I7)."""
+    end = len(lines)
+    while end > top and not lines.lines[end - 1].strip(b" \t\0\x1a"):
+        end -= 1
+    first = _COUNTER.search(lines.lines[top])
+    if first is None or b"." not in lines.lines[top] or len(lines.lines[top].split()) < 3 or end - top < _LEAST_ROWS:
+        return lines
+    for index in range(top, end):
+        last = _COUNTER.search(lines.lines[index])
+        if last is None or int(last[1]) != int(first[1]) + index - top:
+            return lines
+    return Lines(lines.file, lines.lines[:top] + [_COUNTER.sub(b"", line) for line in lines.lines[top:end]])
 
 
 class _Block:
@@ -128,7 +174,7 @@ def _form(text: str) -> tuple[str | None, bool]:
 
 def _row(text: str, separator: str | None, comma: bool) -> list[str] | None:
     """The numbers of a row, None where it has something else; a time of the calendar in front is left out."""
-    text = _DECIMAL.sub(".", text) if comma else text
+    text = (_DECIMAL.sub(".", text) if comma else text).translate(_FORTRAN)
     cells = text.strip().rstrip(separator).split(separator) if separator else _TOUCHING.sub(" ", text).split()
     cells = [cell.strip() for cell in cells]
     if len(cells) > 1 and _MOMENT.match(cells[0]):
@@ -161,9 +207,12 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
     if head.step is None and not (columns and columns[0].is_time) and _moments(lines, start, form):
         _clocked(lines, start, form, head)
     values, lengths = _values(lines, start, form, width)
-    block = _Block(head, values, columns)
     even = lengths == width and width > 1
     table = values.reshape(-1, width) if even else values[:, None]
+    if even and columns and labels.is_index(columns[0].name) and (np.diff(table[:, 0]) == 1.0).all():
+        table, columns, width = table[:, 1:], columns[1:], width - 1
+        values = table.ravel()
+    block = _Block(head, values, columns)
     timed = even and _timed(table, columns, head, lines, start, form)
     announced = head.count or 0
     one = width == 1 or (
@@ -186,7 +235,7 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
             f"neither names of columns, nor a count, nor the numbers say whether {width} a row are components or one "
             f"series"
         )
-        raise lines.error(start, wrong, "name the columns: kouros motions convert")
+        raise lines.error(start, wrong, f"name the columns, or one for all: {_CONVERT}")
     return block, start
 
 
@@ -291,16 +340,18 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     top = _top(lines)
     if top is None:
         raise lines.error(0, "expected rows of numbers, which are nowhere", "give a file of accelerations")
+    lines = _uncounted(lines, top)
     block, start = _layout(lines, top)
     head = block.head
+    chosen = _accelerations(lines, block)
     dt = _step(lines, start, block)
     count, width = block.data.shape
     if head.count is not None and head.count != count:
         wrong = f"announces {head.count} samples, and {count} are there"
         raise lines.error(head.at["count"], wrong, "it is cut off or damaged: fetch it again")
     if not block.columns and width > _BARE - 1:
-        raise lines.error(start, f"nothing names its {width} columns", "name them: kouros motions convert")
-    chosen = _accelerations(lines, block)
+        remedy = "name them: kouros motions convert FILE --columns time,ns,ew,ud --unit g --out FOLDER"
+        raise lines.error(start, f"nothing names its {width} columns", remedy)
     begins = None if head.start is None else trace_headers.start_time(lines, head.at["start"], *head.start)
     traces = []
     for number in chosen:
@@ -335,7 +386,11 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 start_is="unknown" if begins is None else "record",
                 headonly=headonly,
                 peak={"acceleration": peak},
-                more=({"column": column.name} if column.name else {}) | ({"notes": notes} if notes else {}),
+                more={
+                    key: said
+                    for key, said in {"column": column.name, "notes": notes, "unit_said": column.said}.items()
+                    if said
+                },
                 about=header_facts.about(**head.about),
             )
         )
@@ -350,7 +405,8 @@ def _accelerations(lines: Lines, block: _Block) -> list[int]:
     if "acceleration" in kinds:
         chosen = [number for number, kind in enumerate(kinds) if kind == "acceleration"]
     at = block.head.at.get("columns")
-    if at is not None and labels.of_spectra(lines.text(at)):
+    over = block.columns and labels.is_period(block.columns[0].name)
+    if at is not None and (over or labels.of_spectra(lines.text(at))):
         wrong = f"names spectra ({shown(lines.text(at))}), no acceleration"
         raise lines.error(at, wrong, "give the file of the acceleration")
     if not chosen:
@@ -365,7 +421,7 @@ def _step(lines: Lines, start: int, block: _Block) -> float:
     head, step = block.head, block.head.step
     if block.times is None:
         if step is None:
-            raise lines.error(start, "nothing says the time step", "say it: kouros motions convert --dt")
+            raise lines.error(start, "nothing says the time step", f"say it: {_CONVERT}")
         return blocks.step(lines, head.at["step"], step)
     form = _form(lines.text(start))
     first = [cells[0] for i in range(start, min(start + 20, len(lines))) if (cells := _row(lines.text(i), *form))]
@@ -376,6 +432,11 @@ def _step(lines: Lines, start: int, block: _Block) -> float:
         worst = int(np.argmax(np.abs(steps - np.median(steps)))) + 1
         wrong = f"time {times[worst]:g} s is off the even step of {np.median(steps):g} s"
         raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
+    if dt == 1.0 and not head.columns and (np.mod(times, 1.0) == 0.0).all():
+        # No accelerograph takes one sample a second.
+        raise lines.error(
+            start, "its first column counts the rows, and nothing says the time step", f"say it: {_CONVERT}"
+        )
     if step is not None and abs(dt - step) > 2e-3 * dt:
         wrong = f"says a step of {step:g} s, and the times have one of {dt:g} s"
         raise lines.error(head.at["step"], wrong, "find out which is right, and mend the other")

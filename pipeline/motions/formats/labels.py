@@ -30,6 +30,12 @@ _STEP = _label(
     r".rnekleme aral...|zaman ad.m.|采样间隔|时间间隔|サンプリング間隔|шаг(?: по времени| дискретизации)?",
     rf"{_NUMBER}\s*([a-z]{{1,8}})?",
 )
+_STEP_BARE = re.compile(
+    rf"\b(?:dt|(?:sampling|sample|time) (?:interval|step))\s+{_NUMBER}\s*(s|secs?|seconds?|ms|msec)\b", re.I
+)
+_RATE_BARE = re.compile(rf"\bsampl(?:ing|e) (?:rate|freq\w*\.?)\s+{_NUMBER}\s*(?:hz|sps|samples)\b", re.I)
+"""Without a colon, where their unit tells that the number is one."""
+
 _RATE = _label(
     r"(?:sampling|sample)[ _](?:rate|freq(?:uency)?\.?)(?:_hz)?|sps|fs|(?:tasa|frecuencia|velocidad) de muestreo|"
     r"muestreo|frequenza di campionamento|fr.{1,2}quence d'.{1,2}chantillonnage|abtastrate|"
@@ -43,10 +49,17 @@ _COUNT = _label(
     r"(\d{1,9})(?![.\d])",
 )
 _UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit|birim|单位|単位|единицы(?: измерения)?", r"(\S.*)")
-_IN = re.compile(r"\bac\w{3,8}ations?\b.{0,40}?\bin (?:units of )?(\S{1,12})\s*$", re.I)
+_ACCELERATION = r"\b(?:accel\w*|acc.l.ration\w*|acel\w*|beschleunigung\w*|ivme\w*|ускорени\w*)\b"
+_IN = re.compile(rf"{_ACCELERATION}.{{0,40}}?\b(?:in|en|em) (?:units of )?([^\s,;()]{{1,12}})(?=$|[\s,;(])", re.I)
+_IN_BRACKETS = re.compile(rf"{_ACCELERATION}[^()\[\]:=]{{0,40}}[(\[]\s*([^()\[\]]{{1,12}}?)\s*[)\]](?!\s*[:=])", re.I)
+_NOT_THE_SAMPLES = re.compile(r"\b(?:peak|max\w*|pga|m[aá]xim\w*|picco)\b", re.I)
 _TURN = _label(
     r"orientation|comp\.?|component[eo]?|composante|komponente|orientaci.{1,2}n|direction|azimuth(?:_deg)?|stream",
     r"(\S{1,12}(?: deg)?)",
+)
+_TURN_BARE = re.compile(
+    r"\bcomp(?:\.|onent[eo]?)?\s+(N-?S|S-?N|E-?W|W-?E|U-?D|[NS]\s?\d{1,2}\s?[EW]|north-south|east-west|vertical)\b",
+    re.I,
 )
 _SCALE = _label("scale_factor", _NUMBER)
 _SCALED = _label("scale_units", r"(\S{1,12})")
@@ -60,7 +73,11 @@ _START = _label(
 _PEAK = _label(r"pga|peak (?:ground )?acceleration", rf"{_NUMBER}\s*(\S{{1,10}})?")
 _PLACES = {"latitude": r"lat(?:itude?|itud|\.)?(?:_deg)?", "longitude": r"lon(?:gitude?|gitud|g?\.)?(?:_deg)?"}
 _PLACE = {key: _label(words, _NUMBER) for key, words in _PLACES.items()}
-_RAW = re.compile(r"\b(?:un(?:corrected|processed|filtered)|raw data|sin corregir)\b", re.I)
+_RAW = re.compile(
+    r"\b(?:un(?:corrected|processed|filtered)|raw data|sin corregir|no corregid[oa]s?|non corrett[oaie]|"
+    r"non corrig.{1,2}e?s?|unkorrigiert\w*|d.zeltilmemi.)\b",
+    re.I,
+)
 _FILTERED = re.compile(r"\b(?:butterworth|band-?pass|high-?pass)\b|\bfilter\b.{0,40}[:=].*\d", re.I)
 
 _TIME = re.compile(
@@ -69,11 +86,23 @@ _TIME = re.compile(
 _PERIOD = re.compile(r"^(?:p[eé]r[ií]od\w*|periyot|schwingungsdauer|frequen\w+|freq|f|固有周期|周期|период)$", re.I)
 _SPECTRAL = re.compile(r"^(?:p?s[avd]|p?sa\b.*|spectral\b.*|spectrum|rot[dg]\d+|espectr\w*|spektral\w*)$", re.I)
 _NAMED = {
-    "velocity": re.compile(r"^(?:velo\w*|vitesse|geschwindigkeit|hız|скорость|速度)\b", re.I),
+    "velocity": re.compile(r"^(?:vel(?:o\w*)?|vitesse|geschwindigkeit|hız|скорость|速度)\b", re.I),
     "displacement": re.compile(
-        r"^(?:displ\w*|despl\w*|spost\w*|d.placement|verschiebung|перемещение|变位|変位|位移)\b", re.I
+        r"^(?:disp(?:l\w*)?|despl\w*|spost\w*|d.placement|verschiebung|перемещение|变位|変位|位移)\b", re.I
     ),
 }
+_QUALIFIED = re.compile(r"^(?:(?:un)?(?:corrected|processed|filtered)|raw|absolute|relative|ground)\s+", re.I)
+_TITLED = re.compile(
+    r"^\s*(?:[(\[][^()\[\]]{1,20}[)\]]\s*)?(?![:=])(?:$|[(\[,]|(?:time|history|series|records?|values?|data|trace|in|units)\b)",
+    re.I,
+)
+_SUFFIX = re.compile(r"^(?:(t|time)_(s|sec|ms)|(.+?)_(g|gal|mg|cm_?s2|m_?s2|mps2|m/s2|cm/s2))$", re.I)
+_SUFFIXES = {"cms2": "cm/s2", "cm_s2": "cm/s2", "ms2": "m/s2", "m_s2": "m/s2", "mps2": "m/s2"}
+"""Units behind the names of columns, as programs write them: time_s, acc_ns_g, acceleration_ms2."""
+
+_CALLED = re.compile(r"^(?:columns?|fields|colonne|columnas|spalten)\s*[:=]\s*", re.I)
+_INDEX = re.compile(r"^(?:#|no\.?|nr\.?|index|idx|samples?|points?|id|unnamed: 0)?$", re.I)
+_TWO_CELLS = re.compile(r"^(\W{0,10}[^\W\d][^:=,;\t]{0,40})[,;\t]\s{0,10}([^,;\t]{1,80}?)[,;\t\s]{0,100}$")
 _CELL = re.compile(r"^([^()\[\]]{1,40}?)\s*(?:[(\[]\s*([^()\[\]]{1,20}?)\s*[)\]])?$")
 _WORD = re.compile(r"[^\s()\[\]]+(?:[ ]?[(\[][^()\[\]]*[)\]])?")
 _PREFIX = re.compile(
@@ -115,9 +144,7 @@ _OTHERS = {
 }
 _ALIKE = {
     "gals": "gal",
-    "cm/s/s": "cm/s2",
-    "m/s/s": "m/s2",
-    "mm/s/s": "mm/s2",
+    **{f"{length}{spelt}": f"{length}/s2" for length in ("m", "cm", "mm", "in", "ft") for spelt in ("/s/s", "s-2")},
     "g's": "g",
     **dict.fromkeys(("pctg", "percentg", "percentofg", "g%", "%ofg"), "%g"),
     "м/с2": "m/s2",
@@ -140,7 +167,8 @@ def unit_of(word: str) -> tuple[str, str]:
         "acceleration" and one of `trace_headers.FACTORS`; "velocity", "displacement" or "counts" and the word; "" and
         "" for what is no unit.
     """
-    plain = re.sub(r"\s|\^|\*\*", "", word.strip().lower().rstrip(".")).replace("²", "2").replace("sec", "s")
+    plain = re.sub(r"\s|\^|\*+|·", "", word.strip().lower().rstrip("."))
+    plain = plain.replace("²", "2").replace("⁻", "-").replace("sec", "s")
     plain = _ALIKE.get(plain, plain)
     if plain in FACTORS:
         return "acceleration", plain
@@ -155,6 +183,8 @@ class HeadColumn:
     kind: str
     unit: str
     is_time: bool = False
+    said: str = ""
+    """The word for its unit, where that is none that is known."""
 
     @property
     def orientation(self) -> Orientation:
@@ -258,8 +288,10 @@ def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Reco
     head = RecordHead()
     texts = [_text(lines.lines[index]) for index in range(top)]
     for index, text in enumerate(texts):
-        _numbers(lines, index, text, head)
-        _words(lines, index, text, head)
+        # "Sampling rate (Hz),200": two cells of a table are a label and its value.
+        pair = _TWO_CELLS.sub(r"\1: \2", text)
+        _numbers(lines, index, pair, head)
+        _words(lines, index, pair, head)
     raw, filtered = (any(pattern.search(text) for text in texts) for pattern in (_RAW, _FILTERED))
     head.processed = filtered if raw != filtered else None
     last = next((index for index in reversed(range(top)) if texts[index].strip("#%*;| ")), None)
@@ -267,30 +299,59 @@ def read_head(lines: Lines, top: int, width: int, separator: str | None) -> Reco
         names = next((index for index in reversed(range(last)) if texts[index].strip("#%*;| ")), last)
         head.columns = columns_of(_with_units(texts[names], texts[last], separator) or texts[last], width, separator)
         head.at["columns"] = last
+    _titles(lines, texts, head)
     return head
+
+
+def _titles(lines: Lines, texts: list[str], head: RecordHead) -> None:
+    """Take what the title says of the samples, where neither a label nor the name of a column says it."""
+    if head.kind or any(column.kind for column in head.columns):
+        return
+    for index, text in enumerate(texts):
+        found = None if _NOT_THE_SAMPLES.search(text) else _IN_BRACKETS.search(text)
+        if found and (said := unit_of(found[1]))[0] == "acceleration":
+            head.says(lines, index, "unit", said[1])
+            head.kind = said[0]
+    if any(re.search(_ACCELERATION, text, re.I) for text in texts):
+        return
+    for index, text in enumerate(texts):
+        title = _QUALIFIED.sub("", text.strip("#%*| \t"))
+        for kind, pattern in _NAMED.items():
+            if not head.kind and (found := pattern.match(title)) and _TITLED.match(title[found.end() :]):
+                head.kind = kind
+                head.at.setdefault("unit", index)
 
 
 def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn, ...]:
     """Return the columns that a line names, none where it does not name so many."""
-    text = text.lstrip("#%*| \ufeff").strip().rstrip(separator)
+    text = _CALLED.sub("", text.lstrip("#%*| \ufeff")).strip().rstrip(separator)
     # A row's tabs may have become blanks; those of the names tell where one ends.
     separator = separator or ("\t" if text.count("\t") == width - 1 else None)
     cells = [cell.strip().strip('"').strip() for cell in (text.split(separator) if separator else _WORD.findall(text))]
-    found = [_CELL.match(cell) for cell in cells]
+    found = [_CELL.match(cell or "#") for cell in cells[:1]] + [_CELL.match(cell) for cell in cells[1:]]
     if len(cells) != width or not all(found):
         return ()
     columns = []
+    # What counts the rows may stand before the time.
+    first = int(len(cells) > 1 and is_index(cells[0]))
     for number, one in enumerate(found):
         name, word = (one[1], one[2] or "") if one else ("", "")
+        if not word and (behind := _SUFFIX.match(name)):
+            name, word = behind[1] or behind[3], _SUFFIXES.get(behind[4] or "", behind[2] or behind[4])
         # In whatever language: of what is in seconds, nothing but a time is recorded.
         in_time = word.lower() in _SECONDS and not _PERIOD.match(name)
-        is_time = number == 0 and (in_time or (not word and bool(_TIME.match(name))))
+        is_time = number == first and (in_time or (not word and bool(_TIME.match(name))))
         kind, unit = ("", word.lower()) if is_time else unit_of(word)
         kind = "a spectrum" if spectral(name) else kind or _kind_by(name)
-        columns.append(HeadColumn(name, kind, unit, is_time))
+        columns.append(HeadColumn(name, kind, unit, is_time, "" if kind or is_time else word))
     # A sentence may have as many words as a row has numbers: a time, units or directions tell names from it.
     pointing = sum(points(one.orientation) for one in columns)
-    named = columns[0].is_time or any(one.kind for one in columns) or 2 * pointing > len(columns)
+    named = (
+        columns[first].is_time
+        or _PERIOD.match(columns[0].name)
+        or any(one.kind for one in columns)
+        or 2 * pointing > len(columns)
+    )
     return tuple(columns) if named and not any(":" in one.name or "=" in one.name for one in columns) else ()
 
 
@@ -316,7 +377,17 @@ def spectral(name: str) -> bool:
 
 def of_spectra(text: str) -> bool:
     """Whether a line names a response spectrum's values, in whatever form."""
-    return bool(re.search(r"\bP?S[AVD]\s*[(\[]|\b(?:response|spectral) (?:spectr|accel)", text, re.I))
+    return bool(re.search(r"\bP?S[AVD]\s*[(\[]|\b(?:response|spectral) (?:spectr|accel)|\bfourier\b", text, re.I))
+
+
+def is_index(name: str) -> bool:
+    """Whether a column's name is that of one that counts the rows, or none."""
+    return bool(_INDEX.match(name.strip()))
+
+
+def is_period(name: str) -> bool:
+    """Whether a column is called a period or a frequency, over which no record goes."""
+    return bool(_PERIOD.match(name.strip()))
 
 
 def points(said: Orientation) -> bool:
@@ -342,6 +413,10 @@ def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:
         head.says(lines, index, "step", seconds(found[3] or found[1]) * float(found[2]))
     elif (found := _RATE.search(text)) and float(found[2]) > 0.0:
         head.says(lines, index, "step", 1.0 / float(found[2]))
+    elif found := _STEP_BARE.search(text):
+        head.says(lines, index, "step", seconds(found[2]) * float(found[1]))
+    elif (found := _RATE_BARE.search(text)) and float(found[1]) > 0.0:
+        head.says(lines, index, "step", 1.0 / float(found[1]))
     if found := _COUNT.search(text):
         head.says(lines, index, "count", int(found[2]))
     if (found := _PEAK.search(text)) and (unit := unit_of(found[1] or found[3] or ""))[0] == "acceleration":
@@ -372,6 +447,8 @@ def _words(lines: Lines, index: int, text: str, head: RecordHead) -> None:
         head.at["orientation"] = index
     elif (found := _TURN.search(text)) and head.orientation not in {"up", "down"}:
         head.says(lines, index, "orientation", turned(found[2].rstrip(",;")))
+    elif (found := _TURN_BARE.search(text)) and head.orientation is None:
+        head.says(lines, index, "orientation", turned(found[1]))
     if found := _SCALED.search(text):
         head.says(lines, index, "scaled", unit_of(found[2])[1])
     if found := _START.search(text):
@@ -383,5 +460,5 @@ def _units(text: str) -> Iterable[str]:
         # GeoCSV says the unit of each column, the time's first.
         yield found[2].rpartition(",")[2]
         yield found[2].split("  ")[0]
-    if found := _IN.search(text):
+    if (found := _IN.search(text)) and not _NOT_THE_SAMPLES.search(text):
         yield found[1]
