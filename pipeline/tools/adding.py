@@ -171,7 +171,7 @@ def add(
             names = ", ".join(one.name for one in proposals)
             raise UsageError(f"--name is for one record, and the files hold {len(proposals)}: {names}")
         _nothing_wrong(proposals, [*left, *found.unusable], guess=wish.guess)
-        made = plan(folder, level, proposals, wish.accept, before, known)
+        made = plan(folder, level, proposals, wish.accept, before, known, keep=0 if dry_run else SHOWN)
         left = [*left, *found.unusable, *(Unusable(name, str(problem)) for name, problem in made.refused)]
         _clash(wish, made.level, made.already, known)
         if made.refused and not wish.guess:
@@ -305,9 +305,9 @@ def _shown(
         site = read_site(folder, kept=None if settings is None else settings.kept)
         measures = {m.motion.name: m.measures for level in site.levels for m in level.motions if m.motion.name in names}
     looked = []
-    for number, name in enumerate(names[:SHOWN]):
+    for number, one in enumerate(result.placed[:SHOWN]):
         progress.step("records", number, len(names[:SHOWN]))
-        looked += inspect(folder, name)
+        looked += inspect(folder, one.name, done=one.done)
     measures |= {one.motion.name: one.measures for one in looked}
     progress.step("records", len(looked), len(looked))
     drawn = render_record(looked, folder / "added.html" if page is None else page, units)
