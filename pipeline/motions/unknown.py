@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import re
+import zipfile
 from pathlib import Path
 
 from pipeline.motions.errors import MotionError, refusal
@@ -12,12 +13,25 @@ from pipeline.motions.formats import NAMES, columns, record_text
 _SPECTRA = re.compile(rb"\b(?:response|fourier)\b[^\n]{0,60}\bspectr", re.IGNORECASE)
 _LETTERS = [bytes([code]) for code in (*range(65, 91), *range(97, 123))]
 _DIGITS = [bytes([code]) for code in range(48, 58)]
+_BINARY = {
+    b"MATLAB 5.0 MAT-file": ("a MATLAB file", "writematrix([t, ns, ew, ud], 'record.csv')"),
+    b"\x93NUMPY": ("an array of numpy", "np.savetxt('record.csv', np.column_stack([t, ns, ew, ud]), delimiter=',')"),
+}
 _HDF5 = b"\x89HDF"
 _PACKED = {b"\x1f\x8b": "gzip", b"PK\x03\x04": "ZIP", b"BZh": "bzip2", b"\xfd7zXZ": "xz", b"7z\xbc\xaf": "7-Zip"}
 
 
 _PROSE = 100_000
 """Bytes of the longest text that is taken for words about records."""
+
+
+def is_workbook(file: Path) -> bool:
+    """Whether a file is a workbook of Excel or LibreOffice, which is a ZIP inside."""
+    if not zipfile.is_zipfile(file):
+        return False
+    with zipfile.ZipFile(file) as archive:
+        names = set(archive.namelist())
+    return "xl/workbook.xml" in names or {"content.xml", "mimetype"} <= names
 
 
 def is_prose(file: Path) -> bool:
@@ -45,6 +59,14 @@ def unknown(file: Path) -> MotionError:
     """
     with file.open("rb") as stream:
         start = stream.read(400)
+    if is_workbook(file):
+        return refusal(file, "file", "is a workbook", "save the sheet with time and accelerations as CSV")
+    binary = next((said for magic, said in _BINARY.items() if start.startswith(magic)), None)
+    if binary:
+        remedy = (
+            f"write its time and accelerations as text, such as {binary[1]}, and name unit and columns in a first line"
+        )
+        return refusal(file, "file", f"is {binary[0]}", remedy)
     packed = next((name for magic, name in _PACKED.items() if start.startswith(magic)), None)
     if packed:
         remedy = "unpack it: what is read is what its hash is of (kouros motions add unpacks gzip, ZIP and tar)"

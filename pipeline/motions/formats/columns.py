@@ -26,7 +26,7 @@ from pipeline.quantities import Array
 _NUMBER = re.compile(r"^[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[Ee][+-]?\d{1,3})?$")
 _FORTRAN = str.maketrans("Dd", "Ee", '"')
 _COUNTER = re.compile(rb"\s(\d{1,7})\s*$")
-_MOMENT = re.compile(r"^(\d{4})[-/](\d\d)[-/](\d\d)[T ](\d\d):(\d\d):(\d\d(?:\.\d{1,9})?)(Z?)$")
+_MOMENT = re.compile(r"^(?:(\d{4})[-/](\d\d)[-/](\d\d)[T ])?(\d\d):(\d\d):(\d\d(?:\.\d{1,9})?)(Z?)$")
 _TOUCHING = re.compile(r"(?<=\d)(?=[+-]\d*\.)")
 _DECIMAL = re.compile(r"(?<=\d),(?=\d)")
 _LEAST_ROWS, _MOST_COLUMNS, _MOST_HEAD = 5, 20, 200
@@ -215,7 +215,7 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
     block = _Block(head, values, columns)
     timed = even and _timed(table, columns, head, lines, start, form)
     announced = head.count or 0
-    one = width == 1 or (
+    one = width in {1, head.per_row} or (
         not columns and not timed and (announced == values.size or (not whole and announced > len(table)))
     )
     if not one and not announced and not columns and not timed and head.step is not None:
@@ -295,7 +295,7 @@ def _clocked(lines: Lines, start: int, form: tuple[str | None, bool], head: Reco
     if len(stamps) < _LEAST_ROWS:
         return
     try:
-        days = [date(*map(int, one.group(1, 2, 3))).toordinal() for one in stamps]
+        days = [date(*map(int, one.group(1, 2, 3))).toordinal() if one[1] else 0 for one in stamps]
     except ValueError as error:
         raise lines.error(start, f"has a time of the calendar that is none ({error})") from error
     clock = np.array([[float(part) for part in one.group(4, 5, 6)] for one in stamps])
@@ -309,7 +309,7 @@ def _clocked(lines: Lines, start: int, form: tuple[str | None, bool], head: Reco
         raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
     head.says(lines, start, "step", dt)
     # Without a Z nobody knows whose clock it is.
-    if stamps[0][7] and head.start is None:
+    if stamps[0][7] and stamps[0][1] and head.start is None:
         head.says(lines, start, "start", tuple(float(part) for part in stamps[0].group(1, 2, 3, 4, 5, 6)))
 
 

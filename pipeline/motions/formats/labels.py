@@ -31,7 +31,9 @@ _STEP = _label(
     rf"{_NUMBER}\s*([a-z]{{1,8}})?",
 )
 _STEP_BARE = re.compile(
-    rf"\b(?:dt|(?:sampling|sample|time) (?:interval|step))\s+{_NUMBER}\s*(s|secs?|seconds?|ms|msec)\b", re.I
+    r"\b(?:dt|(?:sampling|sample|time) (?:interval|step)|equally spaced (?:at|by)|(?:equal )?intervals? of)\s+"
+    rf"{_NUMBER}\s*(s|secs?|seconds?|ms|msec)\b",
+    re.I,
 )
 _RATE_BARE = re.compile(rf"\bsampl(?:ing|e) (?:rate|freq\w*\.?)\s+{_NUMBER}\s*(?:hz|sps|samples)\b", re.I)
 """Without a colon, where their unit tells that the number is one."""
@@ -73,6 +75,13 @@ _START = _label(
 _PEAK = _label(r"pga|peak (?:ground )?acceleration", rf"{_NUMBER}\s*(\S{{1,10}})?")
 _PLACES = {"latitude": r"lat(?:itude?|itud|\.)?(?:_deg)?", "longitude": r"lon(?:gitude?|gitud|g?\.)?(?:_deg)?"}
 _PLACE = {key: _label(words, _NUMBER) for key, words in _PLACES.items()}
+_PER_ROW = re.compile(
+    r"\b(\d{1,2}) (?:(?:points|values|data|numbers|samples) )?per (?:line|row)\b|"
+    r"\((\d{1,2})[EFG]\d{1,2}\.\d{1,2}(?:,\s*I\d{1,2})?\)",
+    re.I,
+)
+"""How many numbers of one series a row has: in words, or as a format of Fortran."""
+
 _RAW = re.compile(
     r"\b(?:un(?:corrected|processed|filtered)|raw data|sin corregir|no corregid[oa]s?|non corrett[oaie]|"
     r"non corrig.{1,2}e?s?|unkorrigiert\w*|d.zeltilmemi.)\b",
@@ -84,7 +93,11 @@ _TIME = re.compile(
     r"^(?:time|t|zeit|tiempo|tempo|temps|zaman|tijd|tid|czas|.as|timp|время|χρ.νος|时间|時間|seconds?|sec)$", re.I
 )
 _PERIOD = re.compile(r"^(?:p[eé]r[ií]od\w*|periyot|schwingungsdauer|frequen\w+|freq|f|固有周期|周期|период)$", re.I)
-_SPECTRAL = re.compile(r"^(?:p?s[avd]|p?sa\b.*|spectral\b.*|spectrum|rot[dg]\d+|espectr\w*|spektral\w*)$", re.I)
+_SPECTRAL = re.compile(
+    r"^(?:p?s[avd](?:[_ ].*)?|(?-i:Sa?e)|p?sa\b.*|pseudo\W?(?:spectr|acc|vel).*|spectral\b.*|spectrum|rot[dg]\d+|"
+    r"espectr\w*|spektral\w*)$",
+    re.I,
+)
 _NAMED = {
     "velocity": re.compile(r"^(?:vel(?:o\w*)?|vitesse|geschwindigkeit|hız|скорость|速度)\b", re.I),
     "displacement": re.compile(
@@ -93,12 +106,16 @@ _NAMED = {
 }
 _QUALIFIED = re.compile(r"^(?:(?:un)?(?:corrected|processed|filtered)|raw|absolute|relative|ground)\s+", re.I)
 _TITLED = re.compile(
-    r"^\s*(?:[(\[][^()\[\]]{1,20}[)\]]\s*)?(?![:=])(?:$|[(\[,]|(?:time|history|series|records?|values?|data|trace|in|units)\b)",
+    r"^\s*(?:[(\[][^()\[\]]{1,20}[)\]]\s*)?(?![:=])"
+    r"(?:$|[(\[,]|(?:time|history|series|records?|values?|data|trace|in|units)\b)",
     re.I,
 )
 _SUFFIX = re.compile(r"^(?:(t|time)_(s|sec|ms)|(.+?)_(g|gal|mg|cm_?s2|m_?s2|mps2|m/s2|cm/s2))$", re.I)
 _SUFFIXES = {"cms2": "cm/s2", "cm_s2": "cm/s2", "ms2": "m/s2", "m_s2": "m/s2", "mps2": "m/s2"}
 """Units behind the names of columns, as programs write them: time_s, acc_ns_g, acceleration_ms2."""
+
+_CLOCK = re.compile(r"^(?:[ymd]+[-/][ymd]+[-/][ymd]+[ t])?h+:m+:s+(?:\.[sf0]+)?$", re.I)
+"""How programs call a clock's form where a unit would stand."""
 
 _CALLED = re.compile(r"^(?:columns?|fields|colonne|columnas|spalten)\s*[:=]\s*", re.I)
 _INDEX = re.compile(r"^(?:#|no\.?|nr\.?|index|idx|samples?|points?|id|unnamed: 0)?$", re.I)
@@ -133,6 +150,7 @@ _SECONDS = {
     "seconds": 1.0,
     "ms": 0.001,
     "msec": 0.001,
+    "sn": 1.0,
     "с": 1.0,
     "сек": 1.0,
     "秒": 1.0,
@@ -218,6 +236,8 @@ class RecordHead:
         The peak acceleration and one in its last digit, in m/s2.
     code : tuple of str
         Network, station, location and channel.
+    per_row : int or None
+        Numbers of one series in a row.
     columns : tuple of HeadColumn
         As the last line names them.
     about : dict
@@ -236,6 +256,7 @@ class RecordHead:
     scaled: str = ""
     peak: tuple[float, float] | None = None
     code: tuple[str, str, str, str] = ("", "", "", "")
+    per_row: int | None = None
     columns: tuple[HeadColumn, ...] = ()
     about: dict[str, float] = field(default_factory=dict)
 
@@ -325,6 +346,7 @@ def _titles(lines: Lines, texts: list[str], head: RecordHead) -> None:
 def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn, ...]:
     """Return the columns that a line names, none where it does not name so many."""
     text = _CALLED.sub("", text.lstrip("#%*| \ufeff")).strip().rstrip(separator)
+    text = re.sub(r"\s+(?=[(\[])", " ", text) if separator is None and "\t" not in text else text
     # A row's tabs may have become blanks; those of the names tell where one ends.
     separator = separator or ("\t" if text.count("\t") == width - 1 else None)
     cells = [cell.strip().strip('"').strip() for cell in (text.split(separator) if separator else _WORD.findall(text))]
@@ -344,6 +366,12 @@ def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn
         kind, unit = ("", word.lower()) if is_time else unit_of(word)
         kind = "a spectrum" if spectral(name) else kind or _kind_by(name)
         columns.append(HeadColumn(name, kind, unit, is_time, "" if kind or is_time else word))
+    if separator is None and columns[-1].kind and not any(one.kind or one.said for one in columns[:-1]):
+        # "N-S  E-W  U-D  (gal)": the unit is that of all.
+        alike = columns[-1].kind, columns[-1].unit
+        columns = [
+            one if one.is_time or not points(one.orientation) else HeadColumn(one.name, *alike) for one in columns
+        ]
     # A sentence may have as many words as a row has numbers: a time, units or directions tell names from it.
     pointing = sum(points(one.orientation) for one in columns)
     named = (
@@ -359,7 +387,7 @@ def _with_units(names: str, units: str, separator: str | None) -> str:
     """A row of names with the units of the row below it, "" where that is none of units alone."""
     rows = [text.lstrip("#%*| \ufeff").strip() for text in (names, units)]
     parts = [[cell.strip().strip('"()[]') for cell in row.split(separator)] for row in rows]
-    known = [cell for cell in parts[1] if unit_of(cell)[0] or cell.lower() in _SECONDS]
+    known = [cell for cell in parts[1] if unit_of(cell)[0] or cell.lower() in _SECONDS or _CLOCK.match(cell)]
     if len(parts[0]) != len(parts[1]) or len(known) < len(parts[1]) or len(known) < 2:
         return ""
     return (separator or " ").join(f"{name} ({unit})" for name, unit in zip(*parts, strict=True))
@@ -419,6 +447,8 @@ def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:
         head.says(lines, index, "step", 1.0 / float(found[1]))
     if found := _COUNT.search(text):
         head.says(lines, index, "count", int(found[2]))
+    if found := _PER_ROW.search(text):
+        head.per_row = int(found[1] or found[2])
     if (found := _PEAK.search(text)) and (unit := unit_of(found[1] or found[3] or ""))[0] == "acceleration":
         mantissa, _, power = found[2].lower().partition("e")
         digit = 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))

@@ -21,6 +21,7 @@ from pipeline.motions.formats.record_text import Lines, Source
 _UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF\s+(\S+)", re.IGNORECASE)
 _NEW = re.compile(r"NPTS\s*=\s*(\d{1,9})\s*[,\s]\s*DT\s*=\s*(\d{0,4}\.\d{1,9}(?:E-?\d)?)", re.IGNORECASE)
 _SEED = re.compile(r"([BEHLS][HNLG][A-Z0-9])(?:\d\d|--)?")
+_NAME = re.compile(r"_(\w{1,4})\.AT2$", re.IGNORECASE)
 _REMARK = re.compile(r"\([^()]*\)\s*$")
 _FILTERED = re.compile(r"\bFILTER POINTS?\s*:\s*HP\s*=\s*0*\.?0*[1-9]", re.IGNORECASE)
 _OLD = re.compile(r"^\s*(\d{1,9})\s+(\d{0,4}\.\d{1,9})\s+NPTS\s*,\s*DT", re.IGNORECASE)
@@ -68,6 +69,8 @@ def _direction(word: str) -> tuple[trace_headers.Orientation, str]:
     """What the last item of a title says; in NGA-East it is a channel of SEED, such as BHZ00, with the location."""
     # "164 (CDMG STATION 279)" names the station; "-UP" and "--V" are filled up to three characters.
     word = _REMARK.sub("", word).strip().lstrip("-")
+    # In New Zealand's it is the name of the file, which ends in the component.
+    word = named[1] if (named := _NAME.search(word)) else word
     code = _SEED.fullmatch(word.upper())
     coded = trace_headers.seed_orientation(code[1]) if code else None
     return trace_headers.component(word) if coded is None else (coded, "")
