@@ -127,8 +127,8 @@ def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
 def one_sided(row: Array) -> str | None:
     """Say that numbers are no shaking: never below zero (or above), and about their own trend all but still.
 
-    A spectrum or an envelope under the unit of an acceleration is so.  What is shaken crosses its trend again and again,
-    also where a sensor's offset keeps it on one side of zero.
+    A spectrum or an envelope under the unit of an acceleration is so.  What is shaken crosses its trend again and
+    again, also where a sensor's offset keeps it on one side of zero.
 
     Parameters
     ----------
@@ -148,9 +148,7 @@ def one_sided(row: Array) -> str | None:
     if crossings > _FEW_CROSSINGS:
         return None
     side = "below" if row.max() > 0.0 else "above"
-    return (
-        f"has nothing {side} zero, and crosses its own trend {crossings} times in {len(row)} samples: no shaking does"
-    )
+    return f"is never {side} zero, and crosses its own trend {crossings} times in {len(row)} samples: no shaking does"
 
 
 def cut_off(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:

@@ -230,6 +230,8 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
     elif announced:
         wrong = f"announces {announced} samples, and {values.size} numbers are there, {width} a row"
         raise lines.error(head.at["count"], wrong, "it is cut off or damaged: fetch it again")
+    elif head.kind in {"velocity", "displacement"}:
+        raise _other(lines, head, head.kind, head.unit)
     else:
         wrong = (
             f"neither names of columns, nor a count, nor the numbers say whether {width} a row are components or one "
@@ -410,11 +412,15 @@ def _accelerations(lines: Lines, block: _Block) -> list[int]:
         wrong = f"names spectra ({shown(lines.text(at))}), no acceleration"
         raise lines.error(at, wrong, "give the file of the acceleration")
     if not chosen:
-        at = block.head.at.get("unit", block.head.at.get("columns", 0))
         unit = block.columns[0].unit if block.columns and block.columns[0].unit else block.head.unit
-        wrong = f"holds {kinds[0]}{f' ({unit})' if unit else ''}, no acceleration"
-        raise lines.error(at, wrong, "give the file of the acceleration")
+        raise _other(lines, block.head, kinds[0], unit)
     return chosen
+
+
+def _other(lines: Lines, head: RecordHead, kind: str, unit: str) -> FormatError:
+    at = head.at.get("unit", head.at.get("columns", 0))
+    wrong = f"holds {kind}{f' ({unit})' if unit else ''}, no acceleration"
+    return lines.error(at, wrong, "give the file of the acceleration")
 
 
 def _step(lines: Lines, start: int, block: _Block) -> float:

@@ -119,7 +119,7 @@ _CLOCK = re.compile(r"^(?:[ymd]+[-/][ymd]+[-/][ymd]+[ t])?h+:m+:s+(?:\.[sf0]+)?$
 
 _CALLED = re.compile(r"^(?:columns?|fields|colonne|columnas|spalten)\s*[:=]\s*", re.I)
 _INDEX = re.compile(r"^(?:#|no\.?|nr\.?|index|idx|samples?|points?|id|unnamed: 0)?$", re.I)
-_TWO_CELLS = re.compile(r"^(\W{0,10}[^\W\d][^:=,;\t]{0,40})[,;\t]\s{0,10}([^,;\t]{1,80}?)[,;\t\s]{0,100}$")
+_TWO_CELLS = re.compile(r"^(\W{0,10}[^\W\d][^:=,;\t]{0,40})[,;\t]\s{0,10}([^:=,;\t]{1,80}?)[,;\t\s]{0,100}$")
 _CELL = re.compile(r"^([^()\[\]]{1,40}?)\s*(?:[(\[]\s*([^()\[\]]{1,20}?)\s*[)\]])?$")
 _WORD = re.compile(r"[^\s()\[\]]+(?:[ ]?[(\[][^()\[\]]*[)\]])?")
 _PREFIX = re.compile(
