@@ -170,7 +170,7 @@ def add(
         if wish.answers.name and len(proposals) > 1:
             names = ", ".join(one.name for one in proposals)
             raise UsageError(f"--name is for one record, and the files hold {len(proposals)}: {names}")
-        _nothing_wrong(proposals, [*left, *found.unusable], guess=wish.guess)
+        _nothing_wrong(proposals, [*left, *found.unusable], found.passed_over, guess=wish.guess)
         made = plan(folder, level, proposals, wish.accept, before, known, keep=0 if dry_run else SHOWN)
         left = [*left, *found.unusable, *(Unusable(name, str(problem)) for name, problem in made.refused)]
         _clash(wish, made.level, made.already, known)
@@ -244,12 +244,15 @@ def _listed(missing: Sequence[MissingAnswer]) -> str:
     return f"{counted(len(missing), 'answer')} missing, and nobody to ask:\n  " + "\n  ".join(lines)
 
 
-def _nothing_wrong(proposals: Sequence[RecordProposal], every: Sequence[Unusable], *, guess: bool) -> None:
+def _nothing_wrong(
+    proposals: Sequence[RecordProposal], every: Sequence[Unusable], passed_over: Sequence[str], *, guess: bool
+) -> None:
     """Refuse files that are no records where each was named, and files among which there is no record at all."""
     wrong = [one for one in every if not one.chosen]
     if not proposals or (wrong and not guess):
         told = [(one.name, one.reason) for one in (wrong or every)]
-        raise _refused(told or [("files", "there is no record among them")])
+        why = f" ({'; '.join(passed_over[:5])})" if passed_over else ""
+        raise _refused(told or [("files", f"there is no record among them{why}")])
 
 
 def _refused(told: Sequence[tuple[str, str]], usable: int = 0) -> MotionError:
