@@ -18,7 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import blocks, header_facts, irregular, labels, record_text, trace_headers
+from pipeline.motions.doubts import FACTOR
+from pipeline.motions.formats import blocks, header_facts, irregular, labels, record_text, trace_headers, unit_words
 from pipeline.motions.formats.labels import HeadColumn, RecordHead
 from pipeline.motions.formats.record_text import FormatError, Lines, Source, shown
 from pipeline.quantities import Array
@@ -365,6 +366,8 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         if (column.kind or head.kind) == "counts" and head.scale and head.scaled in trace_headers.FACTORS:
             factor = trace_headers.FACTORS[head.scaled] / head.scale
             notes = f"its head says {head.scale:.9g} counts for 1 {head.scaled}, at every frequency"
+        elif head.factor is not None:
+            notes = f"its head names a factor of {head.factor:.9g}{FACTOR}"
         data = block.data[:, number].copy()
         peak = head.peak[0] if head.peak and width == 1 and factor else None
         if peak and head.peak and factor:
@@ -390,7 +393,11 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 peak={"acceleration": peak},
                 more={
                     key: said
-                    for key, said in {"column": column.name, "notes": notes, "unit_said": column.said}.items()
+                    for key, said in {
+                        "column": column.name,
+                        "notes": notes,
+                        "unit_said": column.said or ("" if unit else head.unit_said),
+                    }.items()
                     if said
                 },
                 about=header_facts.about(**head.about),
@@ -431,7 +438,7 @@ def _step(lines: Lines, start: int, block: _Block) -> float:
         return blocks.step(lines, head.at["step"], step)
     form = _form(lines.text(start))
     first = [cells[0] for i in range(start, min(start + 20, len(lines))) if (cells := _row(lines.text(i), *form))]
-    times = block.times * (labels.seconds(head.columns[0].unit) if head.columns else 1.0)
+    times = block.times * (unit_words.seconds(head.columns[0].unit) if head.columns else 1.0)
     dt = irregular.even_step(times, _digit(first))
     if dt is None:
         steps = np.diff(times)

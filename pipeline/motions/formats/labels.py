@@ -15,6 +15,7 @@ from typing import Any
 from pipeline.motions.formats import trace_headers
 from pipeline.motions.formats.record_text import Lines, shown
 from pipeline.motions.formats.trace_headers import FACTORS, Orientation
+from pipeline.motions.formats.unit_words import SECONDS, seconds, unit_of
 
 _NUMBER = r"([+-]?(?:\d{1,9}(?:\.\d{0,12})?|\.\d{1,12})(?:[eE][+-]?\d{1,2})?)"
 
@@ -42,7 +43,7 @@ _RATE = _label(
     r"(?:sampling|sample)[ _](?:rate|freq(?:uency)?\.?)(?:_hz)?|sps|fs|(?:tasa|frecuencia|velocidad) de muestreo|"
     r"muestreo|frequenza di campionamento|fr.{1,2}quence d'.{1,2}chantillonnage|abtastrate|"
     r".rnekleme (?:frekans.|h.z.)|采样(?:频率|率)|サンプリング周波数|частота(?: дискретизации)?",
-    _NUMBER,
+    rf"{_NUMBER}\s*(khz|(?:secs?|seconds?|s)\b)?",
 )
 _COUNT = _label(
     r"(?:number|no\.?) of (?:data|points|samples|values)|npts|ndata|(?:num_?)?samples|sample[ _]count|"
@@ -64,6 +65,9 @@ _TURN_BARE = re.compile(
     re.I,
 )
 _SCALE = _label("scale_factor", _NUMBER)
+_FACTOR = _label("scale|scal(?:e|ing) factor|multiplier|factor de escala|fattore di scala", _NUMBER)
+_FRACTION = re.compile(r"(?<![\d/.])1 ?/ ?(\d{1,5})(?![\d/.])")
+_COMMA = re.compile(r"(?<![\d.,])(\d{1,6}),(\d{1,6})(?![\d.,])")
 _SCALED = _label("scale_units", r"(\S{1,12})")
 _DIP = _label("dip(?:_deg)?", _NUMBER)
 _SID = _label("sid", r"([A-Z0-9]{0,8})_([A-Z0-9]{1,8})_([A-Z0-9]{0,8})_([A-Z0-9]_?[A-Z0-9]_?[A-Z0-9])\b")
@@ -142,55 +146,6 @@ _CHINESE: dict[str, Orientation] = {
 """The same in Chinese and Japanese, with 向 or 方向 behind them, and the word for acceleration before or after."""
 
 _GLYPHS = re.compile(r"(?:方向|方|向|分量|成分|加速度|[\s_:-])+")
-_SECONDS = {
-    "s": 1.0,
-    "sec": 1.0,
-    "secs": 1.0,
-    "second": 1.0,
-    "seconds": 1.0,
-    "ms": 0.001,
-    "msec": 0.001,
-    "sn": 1.0,
-    "с": 1.0,
-    "сек": 1.0,
-    "秒": 1.0,
-}
-_OTHERS = {
-    **dict.fromkeys(("m/s", "cm/s", "mm/s", "in/s", "kine", "nm/s"), "velocity"),
-    **dict.fromkeys(("m", "cm", "mm", "in", "nm"), "displacement"),
-    **dict.fromkeys(("count", "counts", "digitalcounts"), "counts"),
-}
-_ALIKE = {
-    "gals": "gal",
-    **{f"{length}{spelt}": f"{length}/s2" for length in ("m", "cm", "mm", "in", "ft") for spelt in ("/s/s", "s-2")},
-    "g's": "g",
-    **dict.fromkeys(("pctg", "percentg", "percentofg", "g%", "%ofg"), "%g"),
-    "м/с2": "m/s2",
-    "см/с2": "cm/s2",
-    "гал": "gal",
-}
-
-
-def unit_of(word: str) -> tuple[str, str]:
-    """Return what a unit is of, and how it is called here.
-
-    Parameters
-    ----------
-    word : str
-        Such as "cm/sec**2", "m/s²", "G", "cm/s".
-
-    Returns
-    -------
-    (str, str)
-        "acceleration" and one of `trace_headers.FACTORS`; "velocity", "displacement" or "counts" and the word; "" and
-        "" for what is no unit.
-    """
-    plain = re.sub(r"\s|\^|\*+|·", "", word.strip().lower().rstrip("."))
-    plain = plain.replace("²", "2").replace("⁻", "-").replace("sec", "s")
-    plain = _ALIKE.get(plain, plain)
-    if plain in FACTORS:
-        return "acceleration", plain
-    return (_OTHERS[plain], plain) if plain in _OTHERS else ("", "")
 
 
 @dataclass
@@ -236,6 +191,10 @@ class RecordHead:
         The peak acceleration and one in its last digit, in m/s2.
     code : tuple of str
         Network, station, location and channel.
+    factor : float or None
+        What a head calls a scale, other than one, and not whether the numbers have it.
+    unit_said : str
+        The word for the unit, where that is none that is known.
     per_row : int or None
         Numbers of one series in a row.
     columns : tuple of HeadColumn
@@ -256,6 +215,8 @@ class RecordHead:
     scaled: str = ""
     peak: tuple[float, float] | None = None
     code: tuple[str, str, str, str] = ("", "", "", "")
+    factor: float | None = None
+    unit_said: str = ""
     per_row: int | None = None
     columns: tuple[HeadColumn, ...] = ()
     about: dict[str, float] = field(default_factory=dict)
@@ -361,7 +322,7 @@ def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn
         if not word and (behind := _SUFFIX.match(name)):
             name, word = behind[1] or behind[3], _SUFFIXES.get(behind[4] or "", behind[2] or behind[4])
         # In whatever language: of what is in seconds, nothing but a time is recorded.
-        in_time = word.lower() in _SECONDS and not _PERIOD.match(name)
+        in_time = word.lower() in SECONDS and not _PERIOD.match(name)
         is_time = number == first and (in_time or (not word and bool(_TIME.match(name))))
         kind, unit = ("", word.lower()) if is_time else unit_of(word)
         kind = "a spectrum" if spectral(name) else kind or _kind_by(name)
@@ -387,7 +348,7 @@ def _with_units(names: str, units: str, separator: str | None) -> str:
     """A row of names with the units of the row below it, "" where that is none of units alone."""
     rows = [text.lstrip("#%*| \ufeff").strip() for text in (names, units)]
     parts = [[cell.strip().strip('"()[]') for cell in row.split(separator)] for row in rows]
-    known = [cell for cell in parts[1] if unit_of(cell)[0] or cell.lower() in _SECONDS or _CLOCK.match(cell)]
+    known = [cell for cell in parts[1] if unit_of(cell)[0] or cell.lower() in SECONDS or _CLOCK.match(cell)]
     if len(parts[0]) != len(parts[1]) or len(known) < len(parts[1]) or len(known) < 2:
         return ""
     return (separator or " ").join(f"{name} ({unit})" for name, unit in zip(*parts, strict=True))
@@ -423,11 +384,6 @@ def points(said: Orientation) -> bool:
     return isinstance(said, float) or said in {"up", "down"}
 
 
-def seconds(word: str | None) -> float:
-    """How many seconds one of a unit of time is; 1 for what is none, or left out."""
-    return _SECONDS.get((word or "").strip().lower(), 1.0)
-
-
 def _text(raw: bytes) -> str:
     try:
         text = raw.decode("utf-8")
@@ -437,10 +393,14 @@ def _text(raw: bytes) -> str:
 
 
 def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:
+    text = _COMMA.sub(r"\1.\2", _FRACTION.sub(lambda found: f"{1.0 / max(int(found[1]), 1):.12f}", text))
     if found := _STEP.search(text):
         head.says(lines, index, "step", seconds(found[3] or found[1]) * float(found[2]))
     elif (found := _RATE.search(text)) and float(found[2]) > 0.0:
-        head.says(lines, index, "step", 1.0 / float(found[2]))
+        # "Sampling rate: 0.005 sec" is what a step is called as well.
+        behind = (found[3] or "").lower()
+        rate = float(found[2]) * (1000.0 if behind == "khz" else 1.0)
+        head.says(lines, index, "step", rate if behind.startswith("s") else 1.0 / rate)
     elif found := _STEP_BARE.search(text):
         head.says(lines, index, "step", seconds(found[2]) * float(found[1]))
     elif (found := _RATE_BARE.search(text)) and float(found[1]) > 0.0:
@@ -455,6 +415,8 @@ def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:
         head.says(lines, index, "peak", (FACTORS[unit[1]] * abs(float(found[2])), FACTORS[unit[1]] * digit))
     if (found := _SCALE.search(text)) and float(found[2]) != 0.0:
         head.says(lines, index, "scale", float(found[2]))
+    if (found := _FACTOR.search(text)) and float(found[2]) not in {0.0, 1.0}:
+        head.says(lines, index, "factor", float(found[2]))
     for key, pattern in _PLACE.items():
         if found := pattern.search(text):
             head.about.setdefault(key, float(found[2]))
@@ -467,6 +429,9 @@ def _words(lines: Lines, index: int, text: str, head: RecordHead) -> None:
             head.says(lines, index, "unit", unit)
             head.kind = kind
             break
+    else:
+        if found := _UNIT.search(text):
+            head.unit_said = found[2].split("  ")[0].rstrip()[:40]
     if found := _SID.search(text):
         network, station, location, channel = found.groups()[1:]
         head.says(lines, index, "code", (network, station, location, channel.replace("_", "")))

@@ -15,7 +15,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, labels, record_text, trace_headers
+from pipeline.motions.formats import blocks, record_text, trace_headers, unit_words
 from pipeline.motions.formats.record_text import Lines, Source
 
 _UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF\s+(\S+)", re.IGNORECASE)
@@ -36,7 +36,7 @@ def is_format(source: Source) -> bool:
 def _traces(lines: Lines, headonly: bool) -> list[Any]:
     """Return the trace of a PEER AT2 file."""
     unit = lines.match(2, _UNIT, "'ACCELERATION TIME SERIES IN UNITS OF G'")
-    kind, units = labels.unit_of(unit[2].rstrip(",;"))
+    kind, units = unit_words.unit_of(unit[2].rstrip(",;"))
     if kind != "acceleration":
         wrong = f"the unit is {record_text.shown(unit[2])}, which is none of an acceleration that is known"
         raise lines.error(2, wrong, "give the file as CSV with its unit declared")

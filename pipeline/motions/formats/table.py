@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import blocks, labels, nied, record_text, trace_headers
+from pipeline.motions.formats import blocks, labels, nied, record_text, trace_headers, unit_words
 from pipeline.motions.formats.record_text import Lines, Source
 from pipeline.motions.formats.trace_headers import FACTORS, Orientation
 from pipeline.quantities import Array
@@ -138,7 +138,7 @@ def _cells(row: bytes) -> list[tuple[str, str] | None]:
         if not cells and (bare := _BARE.match(text)):
             cells.append((bare[1], "s"))
         else:
-            cells.append((found[1], labels.unit_of(unit)[1] or unit) if found else None)
+            cells.append((found[1], unit_words.unit_of(unit)[1] or unit) if found else None)
     return cells
 
 

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from pipeline.motions.converting import convert
+from pipeline.motions.doubts import doubts
 from pipeline.motions.errors import MotionError
 from pipeline.motions.formats import FormatError
-from pipeline.motions.formats.labels import unit_of
 from pipeline.motions.formats.trace_headers import FACTORS
+from pipeline.motions.formats.unit_words import unit_of
 from pipeline.motions.gathering import gather
+from pipeline.motions.proposing import Answers, propose
 from pipeline.motions.reading import open_traces
 from tests.motions.formats import specimens as hand
 
@@ -209,3 +211,31 @@ def test_words_in_an_archive_are_passed_over(tmp_path):
     assert [name.rpartition("/")[2] for name, _ in found.traces] == ["a.AT2"]
     assert [one.name.rpartition("/")[2] for one in found.unusable] == ["damaged.dat"]
     assert [said.rpartition("/")[2] for said in found.passed_over] == ["DISCLAIMER.TXT: words"]
+
+
+@pytest.mark.parametrize(
+    "said",
+    ["dt = 1/100 s", "Sampling interval: 1/100 s", "Sampling interval (s): 0,01", "Sampling rate: 0.01 sec",
+     "Sampling rate: 0.1 kHz", "Sampling rate (Hz): 100,00", "Sampling period: 10 ms", "Sampling rate 100 Hz"],
+)  # fmt: skip
+def test_steps(tmp_path, said):
+    (tmp_path / "record.txt").write_text("\n".join([said, "Units: gal", "NS EW UD", *rows(" ", first=""), ""]))
+    assert [t.stats.delta for t in open_traces(tmp_path / "record.txt", [])] == pytest.approx([hand.DT] * 3)
+
+
+def test_a_factor_in_a_head_is_doubtful(tmp_path):
+    """Whether the numbers have it nobody can know."""
+    head = ["Sampling rate: 100 Hz", "Units: gal", "Scale factor: 10", "NS EW UD"]
+    (tmp_path / "record.txt").write_text("\n".join([*head, *rows(" ", first=""), ""]))
+    told = [f"HN{i}: {trace.stats.kouros.notes}" for i, trace in enumerate(open_traces(tmp_path / "record.txt", []))]
+    (doubt,) = doubts(told)
+    assert doubt.startswith("its head names a factor of 10, and does not say whether")
+
+
+def test_a_unit_that_is_none_is_quoted(tmp_path):
+    (tmp_path / "record.txt").write_text(
+        "\n".join(["Sampling rate: 100 Hz", "Units: 10-3 g", "NS EW UD", *rows(" ", first=""), ""])
+    )
+    (proposal,), _ = propose(gather([tmp_path / "record.txt"]), Answers())
+    (unit,) = (one for one in proposal.questions if one.about == "unit")
+    assert unit.text.startswith("Its file says '10-3 g' for the unit, which is none that is known")
