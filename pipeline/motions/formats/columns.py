@@ -175,7 +175,9 @@ def _form(text: str) -> tuple[str | None, bool]:
 
 def _row(text: str, separator: str | None, comma: bool) -> list[str] | None:
     """The numbers of a row, None where it has something else; a time of the calendar in front is left out."""
-    text = (_DECIMAL.sub(".", text) if comma else text).translate(_FORTRAN)
+    text = _DECIMAL.sub(".", text) if comma else text
+    if '"' in text or "D" in text or "d" in text:
+        text = text.translate(_FORTRAN)
     cells = text.strip().rstrip(separator).split(separator) if separator else _TOUCHING.sub(" ", text).split()
     cells = [cell.strip() for cell in cells]
     if len(cells) > 1 and _MOMENT.match(cells[0]):
