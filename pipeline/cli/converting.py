@@ -17,7 +17,9 @@ from pipeline.cli.options import as_json, dry_run, say_dry
     metavar="NAME,...",
     help="What each column is: time (s) or time_ms, ns, ew, ud, a name of your own with --orientation, - for none.",
 )
-@click.option("--unit", required=True, help="Of the accelerations: m/s2, cm/s2, mm/s2, gal, g, mg, in/s2, g/10.")
+@click.option(
+    "--unit", required=True, help="Of the accelerations: m/s2, cm/s2, mm/s2, gal, mgal, g, mg, %g, g/10, in/s2, ft/s2."
+)
 @click.option("--dt", type=float, help="Step in s, where no column is the time, or times are irregular.")
 @click.option("--orientation", metavar="WORD,...", help="Of each component in order: up, down or degrees from north.")
 @click.option(

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from pipeline.motions.errors import refusal
-from pipeline.motions.formats import blocks, irregular, record_text, trace_headers
+from pipeline.motions.formats import blocks, irregular, labels, record_text, trace_headers
 from pipeline.motions.formats import columns as text_columns
-from pipeline.motions.formats.record_text import Lines
+from pipeline.motions.formats.record_text import FormatError, Lines
 from pipeline.motions.formats.trace_headers import FACTORS, Orientation
 from pipeline.quantities import Array
 from pipeline.resources import replacing
@@ -111,6 +111,7 @@ def convert(
     turned = _orientations(file, [name for _, name in parts], orientation)
     lines = record_text.open_lines(file)
     table, top, steps = _numbers(lines, len(named))
+    _check_head(lines, top, len(named), [number for number, _ in parts], unit, dt)
     if clocks:
         number, clock = clocks[0]
         data, step, told = _timed(lines, top, _TIMES[clock] * table[:, number], table[:, [n for n, _ in parts]], dt)
@@ -162,7 +163,10 @@ def _numbers(lines: Lines, columns: int) -> tuple[Array, int, list[str]]:
     top, form = next(found, (0, None))
     if form is None and columns == 1 and (wrapped := text_columns.series(lines)):
         values, top, width = wrapped
+        row = lines.text(top).split()
+        counted = len(row) == width + 1
         told = [f"{top} lines before the first row of numbers were passed over"] if top else []
+        told += ["the last number of each row counts the rows, and is left out"] if counted else []
         return values[:, None], top, [*told, f"the {width} numbers of a row are read on as one series"]
     if form is None:
         wrong = f"none of the first {min(len(lines), _MOST_HEAD)} lines has {columns} numbers"
@@ -184,6 +188,36 @@ def _numbers(lines: Lines, columns: int) -> tuple[Array, int, list[str]]:
         raise lines.error(bad, "holds a number beyond all bounds")
     head = [f"{top} lines before the first row of numbers were passed over"] if top else []
     return table, top, head + (["commas are decimal commas"] if comma else [])
+
+
+def _check_head(lines: Lines, top: int, width: int, chosen: Sequence[int], unit: str, dt: float | None) -> None:
+    """Refuse what the lines before the numbers say otherwise: no acceleration, another unit, another step."""
+    form = _form(lines.text(top), width)
+    try:
+        head = labels.read_head(lines, top, width, form[0] if form else None)
+    except FormatError:
+        return  # it contradicts itself, and a person has said what holds
+    for number in chosen:
+        named = bool(head.columns) and bool(head.columns[number].kind)
+        kind = head.columns[number].kind if named else head.kind
+        said = head.columns[number].unit if named else head.unit
+        at = head.at.get("columns" if named else "unit", 0)
+        line = f"{record_text.shown(lines.text(at))}"
+        if kind in {"velocity", "displacement", "a spectrum"}:
+            wrong = f"says that the numbers are {kind} ({line}), no acceleration"
+            raise lines.error(at, wrong, "give the file of the acceleration, or mend that line where it is wrong")
+        if said in FACTORS and FACTORS[said] != FACTORS[unit]:
+            raise lines.error(
+                at, f"says {said} ({line}), and --unit {unit}", "find out which is right, and mend the other"
+            )
+    spectra = next((i for i in range(top) if labels.of_spectra(lines.text(i))), None)
+    if spectra is not None or (head.columns and labels.is_period(head.columns[0].name)):
+        at = head.at["columns"] if spectra is None else spectra
+        wrong = f"names spectra ({record_text.shown(lines.text(at))}), no acceleration"
+        raise lines.error(at, wrong, "give the file of the acceleration, or mend that line where it is wrong")
+    if dt is not None and head.step is not None and abs(dt - head.step) > 2e-3 * dt:
+        wrong = f"says a step of {head.step:g} s, and --dt {dt:g} s"
+        raise lines.error(head.at["step"], wrong, "find out which is right, and mend the other")
 
 
 _EXPONENT = str.maketrans("Dd", "Ee")

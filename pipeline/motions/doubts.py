@@ -14,6 +14,9 @@ UNDECIDED = "the record does not decide between "
 DRIFTS = ": its acceleration drifts against the velocity of its files"
 """Of a processed record whose agency corrected its velocity apart from its acceleration."""
 
+FACTOR = ", and does not say whether its numbers have it already: scale in the manifest multiplies them"
+"""Ends what is said of a file whose head names a scale."""
+
 
 def doubts(steps: Sequence[str]) -> tuple[str, ...]:
     """Return what is doubtful of a motion.
@@ -34,4 +37,7 @@ def doubts(steps: Sequence[str]) -> tuple[str, ...]:
             found.append("; ".join(step[step.index(UNDECIDED) :].split("; ")[:2]))
         elif step.startswith(MAY_HOLD) or ALL_USED in step or DRIFTS in step:
             found.append(step)
-    return tuple(found)
+        elif FACTOR in step:
+            # Of each component.
+            found.append(step.partition(": ")[2])
+    return tuple(dict.fromkeys(found))

@@ -16,6 +16,7 @@ from pipeline.motions.parts import LARGEST
 from pipeline.motions.peer_search import SearchRow, read_search
 from pipeline.motions.reading import open_traces
 from pipeline.motions.safe_names import one_line
+from pipeline.motions.unknown import is_prose, is_workbook
 from pipeline.motions.unpacking import UnpackedFile, Unpacking
 
 _NO_ACCELERATION = {".VT2": "velocity", ".DT2": "displacement"}
@@ -100,7 +101,11 @@ def gather(given: Sequence[Path], leave: frozenset[Path] = frozenset(), scratch:
                 elif one.path in made.catalogues.inventories:
                     responses.add(one.path.resolve())
             except (MotionError, OSError) as problem:
-                made.unusable.append(Unusable(one_line(str(one.shown)), _why(one.path, problem)))
+                if one.shown not in given and isinstance(problem, MotionError) and is_prose(one.path):
+                    made.passed_over.append(f"{one.shown}: words")
+                    made.paths.pop(name, None)
+                else:
+                    made.unusable.append(Unusable(one_line(str(one.shown)), _why(one.path, problem)))
     for folder in folders:
         _take_responses(folder, responses, made)
     return made
@@ -151,7 +156,7 @@ def _why(file: Path, problem: MotionError | OSError) -> str:
     if isinstance(problem, OSError):
         return f"cannot be read: {problem.strerror or problem}"
     words = str(problem).removeprefix(f"{file}: ")
-    if file.stat().st_size <= LARGEST and zipfile.is_zipfile(file):
+    if file.stat().st_size <= LARGEST and zipfile.is_zipfile(file) and not is_workbook(file):
         return "is an archive: unpack it, and name the folder"
     return words
 

@@ -11,6 +11,7 @@ import numpy as np
 from pipeline.motions.errors import refusal
 from pipeline.motions.intensity import integrate, measures
 from pipeline.motions.manifest import TargetTable, load_manifest, manifest_file
+from pipeline.motions.processing import Processed
 from pipeline.motions.pulses import HalfCycle, WaveletPulse, shahi_baker_pulse, velocity_half_cycles
 from pipeline.motions.record import Record
 from pipeline.motions.site import measured, prepare
@@ -76,7 +77,13 @@ class Inspection:
     half_cycles: Mapping[str, tuple[HalfCycle, ...]]
 
 
-def inspect(folder: str | Path, name: str = "", damping: tuple[float, ...] = (0.02, 0.05, 0.10)) -> list[Inspection]:
+def inspect(
+    folder: str | Path,
+    name: str = "",
+    damping: tuple[float, ...] = (0.02, 0.05, 0.10),
+    *,
+    done: Processed | None = None,
+) -> list[Inspection]:
     """Read and process the records of a manifest anew, and look at each.
 
     Parameters
@@ -87,6 +94,8 @@ def inspect(folder: str | Path, name: str = "", damping: tuple[float, ...] = (0.
         Only the record of that name; "" for all, those of the floors included.
     damping : tuple of float
         Ratios to critical of the RotD100 spectra.
+    done : Processed or None
+        What came of the record of that name, where it was processed just now.
 
     Returns
     -------
@@ -107,7 +116,7 @@ def inspect(folder: str | Path, name: str = "", damping: tuple[float, ...] = (0.
         known = ", ".join(repr(record.name) for _, record in manifest.records())
         raise refusal(file, "record", f"there is no record {name!r}", f"its records are {known}")
     return [
-        _inspected(file, manifest.site.name, manifest.site.x_azimuth, k, r, *targets[r.name], damping)
+        _inspected(file, manifest.site.name, manifest.site.x_azimuth, k, r, *targets[r.name], damping, done)
         for k, r in chosen
     ]
 
@@ -121,8 +130,10 @@ def _inspected(
     level: str,
     target: TargetTable | None,
     damping: tuple[float, ...],
+    done: Processed | None,
 ) -> Inspection:
-    done = prepare(file, key, record, target, x_azimuth)
+    if done is None:
+        done = prepare(file, key, record, target, x_azimuth)
     motion, before = done.motion, done.before
     periods = standard_periods(SPECTRUM_POINTS)
     v = integrate(motion)[0] if done.velocity is None else done.velocity

@@ -18,7 +18,7 @@ from pydantic import ValidationError
 from pipeline.motions.doubts import doubts
 from pipeline.motions.errors import Judgement, MotionError, refusal, unwritten
 from pipeline.motions.manifest import MANIFEST, LevelTable, Manifest, load_manifest
-from pipeline.motions.processing import EAST
+from pipeline.motions.processing import EAST, Processed
 from pipeline.motions.proposing import RecordProposal
 from pipeline.motions.record import Record, StationTable
 from pipeline.motions.safe_names import one_line, safe_name
@@ -45,6 +45,9 @@ class PlacedRecords:
         What was decided, and why; what is doubtful of its motion too.
     doubts : tuple of str
         What is doubtful of its motion.
+    done : Processed or None
+        The record as it was tried, of the first ones, whose files are called in the site as they were where they came
+        from: the same bytes would give the same once more.
     """
 
     name: str
@@ -52,6 +55,7 @@ class PlacedRecords:
     record: Record
     told: tuple[str, ...]
     doubts: tuple[str, ...] = ()
+    done: Processed | None = None
 
 
 @dataclass(eq=False)
@@ -121,6 +125,8 @@ def plan(
     reasons: Mapping[str, str],
     before: str | None,
     known: Manifest | None,
+    *,
+    keep: int = 0,
 ) -> PlacingPlan:
     """Read and process each record that is to be added, and say where its files go; nothing is written.
 
@@ -135,6 +141,8 @@ def plan(
         Why refusals that are a matter of judgement are overruled, by their names; under "" that of all others.
     before, known : str or None, Manifest or None
         As of `opened`.
+    keep : int
+        Of how many records the processed motion is kept in the plan.
 
     Returns
     -------
@@ -175,10 +183,14 @@ def plan(
                 copies[known_as] = path
             final[local] = known_as
         try:
-            accepted, doubtful = _tried(record, proposal.files, table, reasons, known)
+            accepted, tried = _tried(record, proposal.files, table, reasons, known)
         except MotionError as problem:
             made.refused.append((proposal.name, unwritten(problem)))
             continue
+        doubtful = doubts(tried.motion.steps)
+        # Its steps name it, its files, and its response by the whole path.
+        called = name == record.name and record.response is None
+        called &= all(local == path.name for local, path in proposal.files.items())
         named = _renamed(record.model_copy(update={"name": name, "accept": accepted}), final)
         told = [
             *proposal.told,
@@ -190,7 +202,8 @@ def plan(
         ]
         told += [f"overruled {what}: {why}" for what, why in accepted.items()]
         told += [f"doubtful: {doubt}" for doubt in doubtful]
-        made.placed.append(PlacedRecords(name, level, named, tuple(told), doubtful))
+        done = tried if called and len(made.placed) < keep else None
+        made.placed.append(PlacedRecords(name, level, named, tuple(told), doubtful, done))
         made.copies |= copies
         digests |= {record.sha256[local]: at for local, at in final.items()}
         names.add(name)
@@ -250,8 +263,8 @@ def _tried(
     table: LevelTable | None,
     reasons: Mapping[str, str],
     known: Manifest | None,
-) -> tuple[dict[Judgement, str], tuple[str, ...]]:
-    """Process a record from where its files are now; return why refusals are overruled, and what is doubtful of it."""
+) -> tuple[dict[Judgement, str], Processed]:
+    """Process a record from where its files are now; return why refusals are overruled, and what came of it."""
     now = _renamed(record, {local: str(path.absolute()) for local, path in files.items()})
     azimuth = EAST if known is None else known.site.x_azimuth
     accepted: dict[Judgement, str] = {}
@@ -266,7 +279,7 @@ def _tried(
                 raise
             accepted[problem.judgement] = reason
         else:
-            return accepted, doubts(done.motion.steps)
+            return accepted, done
 
 
 def changed(made: PlacingPlan, site: StationTable) -> str:

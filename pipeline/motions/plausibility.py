@@ -166,15 +166,16 @@ def mean_period(motion: Motion) -> float:
 
 def _residual(motion: Motion, v: Array, u: Array) -> str:
     n = motion.samples
-    peaks = np.abs(v[:2]).max(axis=1)
-    left = np.abs(v[:2, int(0.9 * n) :].mean(axis=1))
+    # The vertical too: that of a logger has gravity in it.
+    peaks = np.abs(v).max(axis=1)
+    left = np.abs(v[:, int(0.9 * n) :].mean(axis=1))
     row = int(np.argmax(left))
     if left[row] > RESIDUAL * peaks[row]:
         return (
-            f"it is called processed, and in the last tenth the velocity of its {'xy'[row]} component is still "
+            f"it is called processed, and in the last tenth the velocity of its {'xyz'[row]} component is still "
             f"{100.0 * left[row]:.3g} cm/s, {left[row] / peaks[row]:.0%} of its peak, more than {RESIDUAL:.0%}"
         )
-    pgd = float(np.abs(u[:2]).max())
+    pgd = float(np.abs(u).max())
     if pgd > PGD_MOST:
         return f"it is called processed, and its displacement reaches {pgd:.3g} m, more than {PGD_MOST:g} m"
     return ""

@@ -291,9 +291,13 @@ class _Making:
         what = "are counts" if unit == "counts" else "may be counts" if silent[0][1].data.dtype.kind == "i" else "?"
         asked = (
             f"give the station's StationXML (level=response, network {stats.network or '?'}, station "
-            f"{stats.station or '?'}) among the files"
+            f"{stats.station or '?'}) among the files, or their unit"
         )
-        text = f"No file says the unit of its samples{'' if what == '?' else f', which {what}'}: {asked}, or their unit"
+        text = f"No file says the unit of its samples{'' if what == '?' else f', which {what}'}: {asked}"
+        if word := stats.get("kouros", {}).get("unit_said"):
+            text = f"Its file says {one_line(word)!r} for the unit, which is none that is known: say what one of it is"
+        elif what == "?" and not stats.network:
+            text = "No file says the unit of its samples"
         if partly:
             text += f" ({', '.join(partly)} knows some of its channels only)"
         option = "STATION.xml, or --unit UNIT" if what != "?" else f"--unit UNIT (one of {', '.join(UNITS)})"

@@ -70,6 +70,10 @@ DROP_RUN, DROP_ALONE = 3, 8
 """The same of one that is the only one (judgement): four zeros amid a weak record are a fault of its transmission."""
 
 
+_LEAST_SHAKEN, _FEW_CROSSINGS = 50, 8
+"""Samples from which a channel is looked at, and crossings of its trend that are too few for shaking (judgement)."""
+
+
 def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
     """Say which channel was cut off at the limit of its instrument, and where; None where none was.
 
@@ -118,6 +122,33 @@ def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
             at, how = jump
             return f"{channel} {how} from sample {at} ({at * dt:.6g} s)"
     return None
+
+
+def one_sided(row: Array) -> str | None:
+    """Say that numbers are no shaking: never below zero (or above), and about their own trend all but still.
+
+    A spectrum or an envelope under the unit of an acceleration is so.  What is shaken crosses its trend again and
+    again, also where a sensor's offset keeps it on one side of zero.
+
+    Parameters
+    ----------
+    row : array, shape (n,)
+        Samples of one channel, in any unit.
+
+    Returns
+    -------
+    str or None
+        None for a record.
+    """
+    if len(row) < _LEAST_SHAKEN or (row.min() < 0.0 < row.max()) or not np.ptp(row):
+        return None
+    place = np.linspace(-1.0, 1.0, len(row))
+    about = row - np.polynomial.Polynomial.fit(place, row, 1)(place)
+    crossings = int(np.count_nonzero(np.diff(np.signbit(about))))
+    if crossings > _FEW_CROSSINGS:
+        return None
+    side = "below" if row.max() > 0.0 else "above"
+    return f"is never {side} zero, and crosses its own trend {crossings} times in {len(row)} samples: no shaking does"
 
 
 def cut_off(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:

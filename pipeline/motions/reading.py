@@ -33,7 +33,7 @@ from pipeline.motions.parts import (
     zero_of,
 )
 from pipeline.motions.plateaus import full_scale
-from pipeline.motions.quality import clipped
+from pipeline.motions.quality import clipped, one_sided
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL, Component, Record
 from pipeline.motions.responses import load_obspy, read_inventory
 from pipeline.motions.several import tell_earthquakes, tell_renewals
@@ -374,6 +374,8 @@ def _check(file: Path, key: str, component: Component, trace: Any, seen: slice) 
         raise refusal(file, place, wrong, "drop silent from the manifest, or name the right channel")
     if not component.silent and seen.stop - seen.start > 1 and np.ptp(values[seen]) == 0.0:
         raise refusal(file, place, f"is dead: every sample is {values[seen][0]:g}", "use a record of a working channel")
+    if (still := one_sided(values[seen])) is not None:
+        raise refusal(file, place, still, "it may be a spectrum or an envelope: give the acceleration against time")
     trace.data = values
 
 

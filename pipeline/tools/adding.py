@@ -170,8 +170,8 @@ def add(
         if wish.answers.name and len(proposals) > 1:
             names = ", ".join(one.name for one in proposals)
             raise UsageError(f"--name is for one record, and the files hold {len(proposals)}: {names}")
-        _nothing_wrong(proposals, [*left, *found.unusable], guess=wish.guess)
-        made = plan(folder, level, proposals, wish.accept, before, known)
+        _nothing_wrong(proposals, [*left, *found.unusable], found.passed_over, guess=wish.guess)
+        made = plan(folder, level, proposals, wish.accept, before, known, keep=0 if dry_run else SHOWN)
         left = [*left, *found.unusable, *(Unusable(name, str(problem)) for name, problem in made.refused)]
         _clash(wish, made.level, made.already, known)
         if made.refused and not wish.guess:
@@ -244,12 +244,15 @@ def _listed(missing: Sequence[MissingAnswer]) -> str:
     return f"{counted(len(missing), 'answer')} missing, and nobody to ask:\n  " + "\n  ".join(lines)
 
 
-def _nothing_wrong(proposals: Sequence[RecordProposal], every: Sequence[Unusable], *, guess: bool) -> None:
+def _nothing_wrong(
+    proposals: Sequence[RecordProposal], every: Sequence[Unusable], passed_over: Sequence[str], *, guess: bool
+) -> None:
     """Refuse files that are no records where each was named, and files among which there is no record at all."""
     wrong = [one for one in every if not one.chosen]
     if not proposals or (wrong and not guess):
         told = [(one.name, one.reason) for one in (wrong or every)]
-        raise _refused(told or [("files", "there is no record among them")])
+        why = f" ({'; '.join(passed_over[:5])})" if passed_over else ""
+        raise _refused(told or [("files", f"there is no record among them{why}")])
 
 
 def _refused(told: Sequence[tuple[str, str]], usable: int = 0) -> MotionError:
@@ -305,9 +308,9 @@ def _shown(
         site = read_site(folder, kept=None if settings is None else settings.kept)
         measures = {m.motion.name: m.measures for level in site.levels for m in level.motions if m.motion.name in names}
     looked = []
-    for number, name in enumerate(names[:SHOWN]):
+    for number, one in enumerate(result.placed[:SHOWN]):
         progress.step("records", number, len(names[:SHOWN]))
-        looked += inspect(folder, name)
+        looked += inspect(folder, one.name, done=one.done)
     measures |= {one.motion.name: one.measures for one in looked}
     progress.step("records", len(looked), len(looked))
     drawn = render_record(looked, folder / "added.html" if page is None else page, units)

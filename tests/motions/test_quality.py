@@ -6,7 +6,7 @@ import numpy as np
 import obspy
 import pytest
 
-from pipeline.motions.quality import clipped, cut_off
+from pipeline.motions.quality import clipped, cut_off, one_sided
 from pipeline.resources import resource
 from tests.motions.formats.conftest import agency_file
 
@@ -178,3 +178,20 @@ def test_shares_by_hand():
 def test_silence_is_not_judged():
     assert cut_off(np.zeros((3, 100)), 0.01, CHANNELS) is None
     assert clipped(np.zeros((3, 100)), 0.01, CHANNELS) is None
+
+
+@pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.parametrize("offset", [0.0, 5.0])
+def test_no_record_is_one_sided(record, name, offset):
+    """Nor with an offset of five times its peak, as of gravity in a logger's vertical."""
+    data, _ = record(name)
+    assert [one_sided(row + offset * np.abs(row).max()) for row in data] == [None] * 3
+
+
+def test_spectra_and_envelopes_are_one_sided():
+    """The square root of a Brune spectrum's power, and the envelope of a record; both fall from one peak."""
+    t = np.arange(1, 401) * 0.01
+    for row in (t / (1.0 + t**2), -np.exp(-t), t * np.exp(1.0 - t)):
+        assert "crosses its own trend" in one_sided(row)
+    assert one_sided(np.sin(2.0 * np.pi * t)) is None
+    assert one_sided(np.zeros(400)) is None

@@ -18,16 +18,20 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import blocks, header_facts, irregular, labels, record_text, trace_headers
+from pipeline.motions.doubts import FACTOR
+from pipeline.motions.formats import blocks, header_facts, irregular, labels, record_text, trace_headers, unit_words
 from pipeline.motions.formats.labels import HeadColumn, RecordHead
-from pipeline.motions.formats.record_text import Lines, Source, shown
+from pipeline.motions.formats.record_text import FormatError, Lines, Source, shown
 from pipeline.quantities import Array
 
 _NUMBER = re.compile(r"^[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[Ee][+-]?\d{1,3})?$")
-_MOMENT = re.compile(r"^(\d{4})[-/](\d\d)[-/](\d\d)[T ](\d\d):(\d\d):(\d\d(?:\.\d{1,9})?)(Z?)$")
+_FORTRAN = str.maketrans("Dd", "Ee", '"')
+_COUNTER = re.compile(rb"\s(\d{1,7})\s*$")
+_MOMENT = re.compile(r"^(?:(\d{4})[-/](\d\d)[-/](\d\d)[T ])?(\d\d):(\d\d):(\d\d(?:\.\d{1,9})?)(Z?)$")
 _TOUCHING = re.compile(r"(?<=\d)(?=[+-]\d*\.)")
 _DECIMAL = re.compile(r"(?<=\d),(?=\d)")
 _LEAST_ROWS, _MOST_COLUMNS, _MOST_HEAD = 5, 20, 200
+_CONVERT = "kouros motions convert FILE --columns ns --dt 0.01 --unit g --out FOLDER"
 _BARE = 4
 """Most columns of a table that nothing names."""
 
@@ -47,16 +51,17 @@ def is_format(source: Source) -> bool:
     top = _top(lines)
     if top is None or len(lines) - top < _LEAST_ROWS:
         return False
+    lines = _uncounted(lines, top)
     try:
         block, start = _layout(lines, top, whole=whole)
         _step(lines, start, block)
-    except record_text.FormatError:
+    except FormatError:
         return False
     return not any(import_module(f"{__package__}.{name}").is_format(source) for name in _OTHERS)
 
 
 def series(lines: Lines) -> tuple[Array, int, int] | None:
-    """Return all numbers of a file in a row, whatever head it has.
+    """Return all numbers of a file in a row, whatever head it has, without those that count its rows.
 
     Parameters
     ----------
@@ -77,9 +82,51 @@ def series(lines: Lines) -> tuple[Array, int, int] | None:
     top = _top(lines)
     if top is None:
         return None
+    lines = _uncounted(lines, top)
     form = _form(lines.text(top))
     width = len(_cells(lines, top, form))
     return _values(lines, top, form, width)[0], top, width
+
+
+def refused(file: str) -> FormatError | None:
+    """Return why the numbers of a file are no record, where rows of numbers are all that follows its head.
+
+    Parameters
+    ----------
+    file : str
+        A text file that no reader knows.
+
+    Returns
+    -------
+    FormatError or None
+        Naming what is not said, with the remedy; None for what holds no such rows.
+    """
+    try:
+        lines = record_text.open_lines(file)
+        if series(lines) is None:
+            return None
+    except (FormatError, OSError):
+        return None
+    try:
+        _traces(lines, headonly=True)
+    except FormatError as problem:
+        return problem
+    return None
+
+
+def _uncounted(lines: Lines, top: int) -> Lines:
+    """The same without the numbers of the rows, where each ends in its own, as in files for SHAKE (8F9.6, I7)."""
+    end = len(lines)
+    while end > top and not lines.lines[end - 1].strip(b" \t\0\x1a"):
+        end -= 1
+    first = _COUNTER.search(lines.lines[top])
+    if first is None or b"." not in lines.lines[top] or len(lines.lines[top].split()) < 3 or end - top < _LEAST_ROWS:
+        return lines
+    for index in range(top, end):
+        last = _COUNTER.search(lines.lines[index])
+        if last is None or int(last[1]) != int(first[1]) + index - top:
+            return lines
+    return Lines(lines.file, lines.lines[:top] + [_COUNTER.sub(b"", line) for line in lines.lines[top:end]])
 
 
 class _Block:
@@ -129,6 +176,8 @@ def _form(text: str) -> tuple[str | None, bool]:
 def _row(text: str, separator: str | None, comma: bool) -> list[str] | None:
     """The numbers of a row, None where it has something else; a time of the calendar in front is left out."""
     text = _DECIMAL.sub(".", text) if comma else text
+    if '"' in text or "D" in text or "d" in text:
+        text = text.translate(_FORTRAN)
     cells = text.strip().rstrip(separator).split(separator) if separator else _TOUCHING.sub(" ", text).split()
     cells = [cell.strip() for cell in cells]
     if len(cells) > 1 and _MOMENT.match(cells[0]):
@@ -161,12 +210,15 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
     if head.step is None and not (columns and columns[0].is_time) and _moments(lines, start, form):
         _clocked(lines, start, form, head)
     values, lengths = _values(lines, start, form, width)
-    block = _Block(head, values, columns)
     even = lengths == width and width > 1
     table = values.reshape(-1, width) if even else values[:, None]
+    if even and columns and labels.is_index(columns[0].name) and (np.diff(table[:, 0]) == 1.0).all():
+        table, columns, width = table[:, 1:], columns[1:], width - 1
+        values = table.ravel()
+    block = _Block(head, values, columns)
     timed = even and _timed(table, columns, head, lines, start, form)
     announced = head.count or 0
-    one = width == 1 or (
+    one = width in {1, head.per_row} or (
         not columns and not timed and (announced == values.size or (not whole and announced > len(table)))
     )
     if not one and not announced and not columns and not timed and head.step is not None:
@@ -181,12 +233,14 @@ def _layout(lines: Lines, top: int, *, whole: bool = True) -> tuple[_Block, int]
     elif announced:
         wrong = f"announces {announced} samples, and {values.size} numbers are there, {width} a row"
         raise lines.error(head.at["count"], wrong, "it is cut off or damaged: fetch it again")
+    elif head.kind in {"velocity", "displacement"}:
+        raise _other(lines, head, head.kind, head.unit)
     else:
         wrong = (
             f"neither names of columns, nor a count, nor the numbers say whether {width} a row are components or one "
             f"series"
         )
-        raise lines.error(start, wrong, "name the columns: kouros motions convert")
+        raise lines.error(start, wrong, f"name the columns, or one for all: {_CONVERT}")
     return block, start
 
 
@@ -246,7 +300,7 @@ def _clocked(lines: Lines, start: int, form: tuple[str | None, bool], head: Reco
     if len(stamps) < _LEAST_ROWS:
         return
     try:
-        days = [date(*map(int, one.group(1, 2, 3))).toordinal() for one in stamps]
+        days = [date(*map(int, one.group(1, 2, 3))).toordinal() if one[1] else 0 for one in stamps]
     except ValueError as error:
         raise lines.error(start, f"has a time of the calendar that is none ({error})") from error
     clock = np.array([[float(part) for part in one.group(4, 5, 6)] for one in stamps])
@@ -260,7 +314,7 @@ def _clocked(lines: Lines, start: int, form: tuple[str | None, bool], head: Reco
         raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
     head.says(lines, start, "step", dt)
     # Without a Z nobody knows whose clock it is.
-    if stamps[0][7] and head.start is None:
+    if stamps[0][7] and stamps[0][1] and head.start is None:
         head.says(lines, start, "start", tuple(float(part) for part in stamps[0].group(1, 2, 3, 4, 5, 6)))
 
 
@@ -291,16 +345,18 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     top = _top(lines)
     if top is None:
         raise lines.error(0, "expected rows of numbers, which are nowhere", "give a file of accelerations")
+    lines = _uncounted(lines, top)
     block, start = _layout(lines, top)
     head = block.head
+    chosen = _accelerations(lines, block)
     dt = _step(lines, start, block)
     count, width = block.data.shape
     if head.count is not None and head.count != count:
         wrong = f"announces {head.count} samples, and {count} are there"
         raise lines.error(head.at["count"], wrong, "it is cut off or damaged: fetch it again")
     if not block.columns and width > _BARE - 1:
-        raise lines.error(start, f"nothing names its {width} columns", "name them: kouros motions convert")
-    chosen = _accelerations(lines, block)
+        remedy = "name them: kouros motions convert FILE --columns time,ns,ew,ud --unit g --out FOLDER"
+        raise lines.error(start, f"nothing names its {width} columns", remedy)
     begins = None if head.start is None else trace_headers.start_time(lines, head.at["start"], *head.start)
     traces = []
     for number in chosen:
@@ -312,6 +368,8 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         if (column.kind or head.kind) == "counts" and head.scale and head.scaled in trace_headers.FACTORS:
             factor = trace_headers.FACTORS[head.scaled] / head.scale
             notes = f"its head says {head.scale:.9g} counts for 1 {head.scaled}, at every frequency"
+        elif head.factor is not None:
+            notes = f"its head names a factor of {head.factor:.9g}{FACTOR}"
         data = block.data[:, number].copy()
         peak = head.peak[0] if head.peak and width == 1 and factor else None
         if peak and head.peak and factor:
@@ -335,7 +393,15 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 start_is="unknown" if begins is None else "record",
                 headonly=headonly,
                 peak={"acceleration": peak},
-                more=({"column": column.name} if column.name else {}) | ({"notes": notes} if notes else {}),
+                more={
+                    key: said
+                    for key, said in {
+                        "column": column.name,
+                        "notes": notes,
+                        "unit_said": column.said or ("" if unit else head.unit_said),
+                    }.items()
+                    if said
+                },
                 about=header_facts.about(**head.about),
             )
         )
@@ -350,32 +416,42 @@ def _accelerations(lines: Lines, block: _Block) -> list[int]:
     if "acceleration" in kinds:
         chosen = [number for number, kind in enumerate(kinds) if kind == "acceleration"]
     at = block.head.at.get("columns")
-    if at is not None and labels.of_spectra(lines.text(at)):
+    over = block.columns and labels.is_period(block.columns[0].name)
+    if at is not None and (over or labels.of_spectra(lines.text(at))):
         wrong = f"names spectra ({shown(lines.text(at))}), no acceleration"
         raise lines.error(at, wrong, "give the file of the acceleration")
     if not chosen:
-        at = block.head.at.get("unit", block.head.at.get("columns", 0))
         unit = block.columns[0].unit if block.columns and block.columns[0].unit else block.head.unit
-        wrong = f"holds {kinds[0]}{f' ({unit})' if unit else ''}, no acceleration"
-        raise lines.error(at, wrong, "give the file of the acceleration")
+        raise _other(lines, block.head, kinds[0], unit)
     return chosen
+
+
+def _other(lines: Lines, head: RecordHead, kind: str, unit: str) -> FormatError:
+    at = head.at.get("unit", head.at.get("columns", 0))
+    wrong = f"holds {kind}{f' ({unit})' if unit else ''}, no acceleration"
+    return lines.error(at, wrong, "give the file of the acceleration")
 
 
 def _step(lines: Lines, start: int, block: _Block) -> float:
     head, step = block.head, block.head.step
     if block.times is None:
         if step is None:
-            raise lines.error(start, "nothing says the time step", "say it: kouros motions convert --dt")
+            raise lines.error(start, "nothing says the time step", f"say it: {_CONVERT}")
         return blocks.step(lines, head.at["step"], step)
     form = _form(lines.text(start))
     first = [cells[0] for i in range(start, min(start + 20, len(lines))) if (cells := _row(lines.text(i), *form))]
-    times = block.times * (labels.seconds(head.columns[0].unit) if head.columns else 1.0)
+    times = block.times * (unit_words.seconds(head.columns[0].unit) if head.columns else 1.0)
     dt = irregular.even_step(times, _digit(first))
     if dt is None:
         steps = np.diff(times)
         worst = int(np.argmax(np.abs(steps - np.median(steps)))) + 1
         wrong = f"time {times[worst]:g} s is off the even step of {np.median(steps):g} s"
         raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
+    if dt == 1.0 and not head.columns and (np.mod(times, 1.0) == 0.0).all():
+        # No accelerograph takes one sample a second.
+        raise lines.error(
+            start, "its first column counts the rows, and nothing says the time step", f"say it: {_CONVERT}"
+        )
     if step is not None and abs(dt - step) > 2e-3 * dt:
         wrong = f"says a step of {step:g} s, and the times have one of {dt:g} s"
         raise lines.error(head.at["step"], wrong, "find out which is right, and mend the other")

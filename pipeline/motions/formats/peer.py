@@ -1,5 +1,7 @@
 """PEER AT2: one component of acceleration in g, as the NGA databases and the older PEER database give it.
 
+Programs that write the same form say other units in its third line.
+
 Four lines of text, the last with the number of samples and the step ("NPTS=  7818, DT= .0050 SEC", with or without its
 comma, or "7818 .0050 NPTS, DT"), then numbers.  The orientation is the last item of the second line.  A header that
 names the corners of its filter ("FILTER POINTS: HP=0.06 Hz LP=40.0 Hz") is of a processed record; the others do not say
@@ -13,12 +15,13 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, record_text, trace_headers, unit_words
 from pipeline.motions.formats.record_text import Lines, Source
 
-_UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF (G\b|CM/S|.*)", re.IGNORECASE)
+_UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF\s+(\S+)", re.IGNORECASE)
 _NEW = re.compile(r"NPTS\s*=\s*(\d{1,9})\s*[,\s]\s*DT\s*=\s*(\d{0,4}\.\d{1,9}(?:E-?\d)?)", re.IGNORECASE)
 _SEED = re.compile(r"([BEHLS][HNLG][A-Z0-9])(?:\d\d|--)?")
+_NAME = re.compile(r"_(\w{1,4})\.AT2$", re.IGNORECASE)
 _REMARK = re.compile(r"\([^()]*\)\s*$")
 _FILTERED = re.compile(r"\bFILTER POINTS?\s*:\s*HP\s*=\s*0*\.?0*[1-9]", re.IGNORECASE)
 _OLD = re.compile(r"^\s*(\d{1,9})\s+(\d{0,4}\.\d{1,9})\s+NPTS\s*,\s*DT", re.IGNORECASE)
@@ -33,8 +36,9 @@ def is_format(source: Source) -> bool:
 def _traces(lines: Lines, headonly: bool) -> list[Any]:
     """Return the trace of a PEER AT2 file."""
     unit = lines.match(2, _UNIT, "'ACCELERATION TIME SERIES IN UNITS OF G'")
-    if unit[2].upper() != "G":
-        wrong = f"the unit is {record_text.shown(unit[2])}, and an AT2 file is in g"
+    kind, units = unit_words.unit_of(unit[2].rstrip(",;"))
+    if kind != "acceleration":
+        wrong = f"the unit is {record_text.shown(unit[2])}, which is none of an acceleration that is known"
         raise lines.error(2, wrong, "give the file as CSV with its unit declared")
     text = lines.text(3, "the number of samples and the step")
     found = _NEW.search(text) or _OLD.search(text)
@@ -50,8 +54,8 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         data=data,
         dt=dt,
         form="PEER AT2",
-        units="g",
-        si_factor=trace_headers.FACTORS["g"],
+        units=units,
+        si_factor=trace_headers.FACTORS[units],
         direction=direction,
         processed=True if _FILTERED.search(lines.text(2)) else None,
         channel=trace_headers.channel_code(1.0 / dt, direction, 1),
@@ -65,6 +69,8 @@ def _direction(word: str) -> tuple[trace_headers.Orientation, str]:
     """What the last item of a title says; in NGA-East it is a channel of SEED, such as BHZ00, with the location."""
     # "164 (CDMG STATION 279)" names the station; "-UP" and "--V" are filled up to three characters.
     word = _REMARK.sub("", word).strip().lstrip("-")
+    # In New Zealand's it is the name of the file, which ends in the component.
+    word = named[1] if (named := _NAME.search(word)) else word
     code = _SEED.fullmatch(word.upper())
     coded = trace_headers.seed_orientation(code[1]) if code else None
     return trace_headers.component(word) if coded is None else (coded, "")

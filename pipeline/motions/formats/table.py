@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import blocks, labels, nied, record_text, trace_headers
+from pipeline.motions.formats import blocks, labels, nied, record_text, trace_headers, unit_words
 from pipeline.motions.formats.record_text import Lines, Source
 from pipeline.motions.formats.trace_headers import FACTORS, Orientation
 from pipeline.quantities import Array
@@ -31,10 +31,6 @@ _CELL = re.compile(r'^\s*"?\s*([^()\[\]"]{1,60}?)\s*[(\[]\s*([^()\[\]"]{1,20}?)\
 _BARE = re.compile(r'^\s*"?\s*(time|t)\s*"?\s*$', re.IGNORECASE)
 _WORD = re.compile(rb"[^\s()\[\]]+[ \t]*(?:[(\[][^()\[\]]*[)\]])?")
 _TIME = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 0.001}
-_SPELLINGS = {
-    "m/s^2": "m/s2", "m/s**2": "m/s2", "m/s/s": "m/s2", "m/s²": "m/s2", "cm/s^2": "cm/s2", "cm/s**2": "cm/s2",
-    "cm/s/s": "cm/s2", "cm/s²": "cm/s2", "mm/s^2": "mm/s2", "mm/s/s": "mm/s2",
-}  # fmt: skip
 _KEY = re.compile(r"^#\s*(processed|station|start)\s*:\s*(.*)$", re.IGNORECASE)
 _START = re.compile(r"^(\d{4})-(\d\d)-(\d\d)[T ](\d\d):(\d\d):(\d\d(?:\.\d{1,6})?)Z?$")
 _STATION = re.compile(r"^(?:(\w{1,8})\.)?(\w{1,8})$")
@@ -71,7 +67,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         raise lines.error(top, f"{wrong} {record_text.shown(lines.text(top))}", "declare each column's unit")
     if len(cells) > _MOST_COLUMNS:
         raise lines.error(top, f"{len(cells)} columns are more than a record has", "split it by stations")
-    lines = _with_points(lines, top + 1, _separator(row))
+    lines = _with_points(_unquoted(lines, top + 1), top + 1, _separator(row))
     table = _numbers(lines, top + 1, _separator(row), len(cells))
     dt = _step(lines, top + 1, _TIME[cells[0][1]] * table[:, 0], _TIME[cells[0][1]])
     timed = _BARE.match(record_text.printable(_parts(row)[0])) is None
@@ -100,6 +96,13 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
             )
         )
     return traces
+
+
+def _unquoted(lines: Lines, start: int) -> Lines:
+    """The same without the quotes that programs put around every cell."""
+    if start >= len(lines) or b'"' not in lines.lines[start]:
+        return lines
+    return Lines(lines.file, lines.lines[:start] + [line.replace(b'"', b"") for line in lines.lines[start:]])
 
 
 def _with_points(lines: Lines, start: int, separator: bytes | None) -> Lines:
@@ -135,7 +138,7 @@ def _cells(row: bytes) -> list[tuple[str, str] | None]:
         if not cells and (bare := _BARE.match(text)):
             cells.append((bare[1], "s"))
         else:
-            cells.append((found[1], _SPELLINGS.get(unit, unit)) if found else None)
+            cells.append((found[1], unit_words.unit_of(unit)[1] or unit) if found else None)
     return cells
 
 

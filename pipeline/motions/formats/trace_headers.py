@@ -13,7 +13,7 @@ from pipeline.motions.formats.record_text import Lines
 from pipeline.quantities import Array, G
 
 FACTORS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "in/s2": 0.0254, "g": G, "mg": 0.001 * G}
-FACTORS |= {"g/10": 0.1 * G, "%g": 0.01 * G}
+FACTORS |= {"g/10": 0.1 * G, "%g": 0.01 * G, "ft/s2": 0.3048, "mgal": 1e-5}
 """Metres per second squared in one of each unit of acceleration."""
 
 PEAK_TOLERANCE = 0.1
@@ -54,6 +54,7 @@ _QUADRANT = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d*)?)\s*([EW])")
 _AZIMUTH = re.compile(r"(\d{1,3}(?:\.\d*)?)\s*(?:DEG(?:REES)?)?\.?")
 _WORDS: dict[str, Orientation] = {"UP": "up", "DOWN": "down", "DN": "down", "DWN": "down"}
 _WORDS |= {"NS": 0.0, "N-S": 0.0, "EW": 90.0, "E-W": 90.0, "UD": "up", "U-D": "up", "UPDO": "up"}
+_WORDS |= {"NORTH-SOUTH": 0.0, "EAST-WEST": 90.0, "UP-DOWN": "up", "UPWARD": "up"}
 _VERTICAL = {"V", "Z", "VER", "VERT", "VERTICAL"}
 _WORDS |= {"N": 0.0, "NORTH": 0.0, "E": 90.0, "EAST": 90.0, "S": 180.0, "SOUTH": 180.0, "W": 270.0, "WEST": 270.0}
 

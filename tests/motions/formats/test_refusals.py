@@ -14,7 +14,7 @@ from tests.motions.formats import specimens as hand
 
 CASES = {
     # name: content, line, words of the message
-    "at2 unit": (hand.at2().replace(b"UNITS OF G", b"UNITS OF CM/S2"), 3, "is in g"),
+    "at2 unit": (hand.at2().replace(b"UNITS OF G", b"UNITS OF CM/S"), 3, "which is none of an acceleration"),
     "at2 short": (hand.at2()[:-40], 17, "the file ends after 58 of the 60 values"),
     "at2 long": (hand.at2() + b"1.0\r\n", 17, "more values of acceleration than the 60"),
     "at2 word": (hand.at2().replace(b"1.0000000E+00", b"one", 1), 5, "expected values of acceleration, found '"),
