@@ -230,7 +230,9 @@ def open_for_reading(url: URL) -> Engine:
         # A file whose changes go to a log of their own is locked by files beside it: without one, nobody is at work.
         mode = "ro&immutable=1" if folder is None and _is_logged(file) else "ro"
         where = f"file:{quote(str(there))}?mode={mode}"
-        lite = create_engine(url, poolclass=NullPool, creator=lambda: sqlite3.connect(where, timeout=PATIENCE_S, uri=True))
+        lite = create_engine(
+            url, poolclass=NullPool, creator=lambda: sqlite3.connect(where, timeout=PATIENCE_S, uri=True)
+        )
         _share(lite)
         if folder is not None:
             weakref.finalize(lite, folder.cleanup)

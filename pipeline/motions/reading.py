@@ -155,6 +155,9 @@ def read_record(folder: str | Path, record: Record) -> Recording:
         # What lies around the window is for the filters alone: whether it is any good is asked of the window.
         seen = slice(*((0, trace.stats.npts) if part is None else part.inside(trace)))
         _check(file, key, component, trace, seen)
+        if (still := one_sided(trace.data[seen])) is not None:
+            remedy = "it may be a spectrum or an envelope: give the acceleration against time"
+            judged(record.accept, "one_sided", file, f"component {component.axis} ({key!r})", still, remedy, steps)
         flat = clipped(trace.data[None, seen], trace.stats.delta, (f"component {component.axis} ({key!r})",))
         if flat is None and inventory is not None and (full := full_scale(trace.data[seen])) is not None:
             at = full[1] + seen.start
@@ -374,8 +377,6 @@ def _check(file: Path, key: str, component: Component, trace: Any, seen: slice) 
         raise refusal(file, place, wrong, "drop silent from the manifest, or name the right channel")
     if not component.silent and seen.stop - seen.start > 1 and np.ptp(values[seen]) == 0.0:
         raise refusal(file, place, f"is dead: every sample is {values[seen][0]:g}", "use a record of a working channel")
-    if (still := one_sided(values[seen])) is not None:
-        raise refusal(file, place, still, "it may be a spectrum or an envelope: give the acceleration against time")
     trace.data = values
 
 

@@ -38,8 +38,15 @@ def test_ramp_through_zero_peaks_between_samples():
     assert m["pgv_resultant"] == pytest.approx(A * T / 4, rel=ROUNDING)
     # The displacement grows all the way: A T^2/2 - A T^2/3.
     assert m["pgd_x"] == pytest.approx(A * T**2 / 6, rel=ROUNDING)
-    # The integral of the squared ramp is a third of the square of its ends.
-    assert m["arias_x"] == pytest.approx(math.pi / (2 * G) * A**2 * T / 3, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("cycles", [3, 40, 450])
+def test_arias_intensity_of_a_sine_up_to_the_nyquist_frequency(cycles):
+    """A^2 T / 2 of whole cycles, also at 0.9 of the Nyquist frequency, where the polygon holds 0.39 of it."""
+    A, dt, n = 2.0, 0.01, 1000
+    T = n * dt
+    m = measures(along_x(A * np.sin(2 * math.pi * cycles * np.arange(n + 1) / n), dt))
+    assert m["arias_x"] == pytest.approx(math.pi / (2 * G) * A**2 * T / 2, rel=ROUNDING)
 
 
 def test_displacement_peaks_between_samples():

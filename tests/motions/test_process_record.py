@@ -146,6 +146,16 @@ def test_a_clipped_record_is_refused_unless_accepted(three, write_manifest):
     assert any("accepted: the neighbour recorded the same peak" in step for step in motion.steps)
 
 
+def test_what_never_crosses_zero_is_refused_unless_accepted(three, write_manifest):
+    push = 2.0 * np.exp(-(((np.arange(len(tone())) * DT - 10.0) / 0.5) ** 2))
+    three(y=push)
+    with pytest.raises(MotionError, match=r"is never below zero.*accept\.one_sided = .REASON") as refused:
+        read_motion(write_manifest())
+    assert refused.value.judgement == "one_sided"
+    (motion,) = read_motion(write_manifest(accept={"one_sided": "a push of a shake table", "drift": "it moves on"}))
+    assert np.array_equal(motion.acceleration[1], push)
+
+
 def test_a_record_that_ends_amid_the_shaking_is_refused_unless_accepted(three, write_manifest):
     three(*(tone()[:2000] * a for a in (1.0, 2.0, 0.5)))
     with pytest.raises(MotionError, match=r"ends during strong shaking.*accept\.cut_off") as refused:
