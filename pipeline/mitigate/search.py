@@ -18,8 +18,10 @@ from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, bends
+from pipeline.mitigate.measures.fixings import FINISHED, finishes
 from pipeline.mitigate.measures.remove import LAST_RESORTS
 from pipeline.mitigate.proposals import (
+    STANDING,
     UNCONCERNED,
     Candidate,
     Case,
@@ -425,6 +427,8 @@ class _Search:
                 if worst > numbers.get("movement", (0.0, "m"))[0]:
                     numbers |= {"worst": (worst, "m")}
                     more = f" {OF_MEAN}{more}"
+            if measure.touches and one.scene.support in STANDING and finishes(one.scene.item, self.runner.values):
+                more = f" {FINISHED}{more}"
             first = f"{UPPER_FIRST} " if say.TWO_BODIES() in one.scene.assumptions else ""
             if held_as_displayed(one.scene.item, one.scene.support):
                 first = f"{HELD_FIRST} {first}"

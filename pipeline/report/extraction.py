@@ -16,6 +16,7 @@ from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.installed import ON_TOP
 from pipeline.mitigate.measures import MEASURES
+from pipeline.mitigate.measures.fixings import FINISHED
 from pipeline.mitigate.measures.horizontal_isolator import GENERIC
 from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
@@ -89,7 +90,7 @@ def _of_measures() -> Iterator[str]:
             yield sentence.replace("{what}", IT).replace("{product}", GENERIC).replace(" {how}", "")
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
-    yield from (ONLY_HERE, AT_BEST, SIZED, HEAVIEST, OF_MEAN, ANCHORED, NAMED_FIRST, UPPER_FIRST, HELD_FIRST)
+    yield from (FINISHED, ONLY_HERE, AT_BEST, SIZED, HEAVIEST, OF_MEAN, ANCHORED, NAMED_FIRST, UPPER_FIRST, HELD_FIRST)
     yield from (row.care for row in fixing_strengths().values())
 
 
