@@ -393,7 +393,7 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
     shape = body(stands, row, words, support, mount, material_of(item, values))
-    item = on_floor(item, shape)
+    item = on_floor(replace(item, surface_material=laid.surface_material), shape)
     builder = _Builder(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:

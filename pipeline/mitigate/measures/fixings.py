@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from pipeline.analysis.classify import material_of
+from pipeline.analysis.footing import rolling
 from pipeline.analysis.model_runs import run_model
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
 from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, bends, held, knows_section
@@ -186,6 +187,8 @@ class Fixing(Measure, ABC):
     fastens: ClassVar[bool] = True
     touches: ClassVar[bool] = True
     phrases: ClassVar[tuple[str, ...]] = (SIDEWAYS, TIPPING, HARMLESS)
+    at_foot: ClassVar[bool] = True
+    """Whether its pieces hold an object at its foot."""
     screwed: ClassVar[bool] = False
     """Whether its pieces are screwed to what the object stands on."""
 
@@ -237,6 +240,8 @@ class Fixing(Measure, ABC):
             return refused(N_("objects of its kind cannot be held so"))
         if not knows_section(scene) or not {"half_width", "cg_height"} <= set(scene.parameters):
             return UNKNOWN_SECTION
+        if self.at_foot and rolling(scene.item) is not None:
+            return refused(N_("it stands on wheels, and has no foot to be held by"))
         if self.screwed and UNSCREWED.intersection(surfaces_in(scene.item.surface_material, of_surface=True)):
             return refused(N_("it stands on glass, into which nothing is screwed"))
         material, lies_on_it = touched(scene.item, runner.values), finishes(scene.item, runner.values)

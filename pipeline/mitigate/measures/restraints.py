@@ -76,6 +76,7 @@ class Ties(Fixing):
     """Tie it down to all sides by monofilament at about its centre of gravity."""
 
     name = "ties"
+    at_foot = False
 
     def reach(self, scene: Scene, pieces: int, size: float, worst: bool) -> Reach:  # noqa: ARG002
         """Return the ties that pull at a time, and their moment about the base."""
@@ -88,6 +89,7 @@ class Brackets(Fixing):
     """Fix its top to the wall behind it."""
 
     name = "brackets"
+    at_foot = False
 
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
         """Propose them for what stands on the floor: the back of a case, a pedestal or a shelf is no wall."""
