@@ -9,9 +9,11 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.response import respond
+from pipeline.mitigate.measures.clearance import TWICE
 from pipeline.mitigate.measures.fixings import FINISHED, HARMLESS
+from pipeline.mitigate.search import ANCHORED
 from pipeline.quantities import G
-from pipeline.records import Furniture, Item, Motion, Support
+from pipeline.records import Anchorage, Furniture, Item, Motion, Support
 from pipeline.report.pages.plainly import plain_measure
 from pipeline.report.units import Units
 from pipeline.tables import table
@@ -144,3 +146,25 @@ def test_nothing_else_is_asked_of_wheels(motion: Motion) -> None:
 
 def test_wheels_are_no_answer_for_what_has_none(motion: Motion) -> None:
     assert not any(text.startswith("Chock") for text in solve(BLOCK, motion.scaled(2.0, "more")).rejected)
+
+
+def test_what_swings_hangs_from_what_bears_twice_its_weight() -> None:
+    """Let go at an angle an ideal pendulum pulls by 3 - 2 cos of it: at 60 degrees twice its weight."""
+    lamp = Item("1", "G", "Lamp", object_name="chandelier", medium="brass", support=Support.SUSPENDED, height_m=1.0,
+                width_m=0.8, suspension_length_m=1.0, mass_kg=20.0, clearance_m=0.01)  # fmt: skip
+    advice = solve(lamp, demo_motion())
+    assert advice.measure == "clearance"
+    assert TWICE in advice.sentence
+    assert "twice its weight" in plain_measure(advice, Units("cm"))
+    swing = advice.parameters["movement"]
+    assert 3.0 - 2.0 * (1.0 - swing**2) ** 0.5 < 2.0
+
+
+@pytest.mark.parametrize("mass", [95.0, 2.0])
+def test_nothing_heavy_is_fixed_to_what_may_fall_itself(motion: Motion, mass: float) -> None:
+    """A bust of 95 kg takes a loose pedestal along, which is fastened first; one of 2 kg does not."""
+    bust = replace(TOWER, object_name="bust", title="Bust", mass_kg=mass, allowable_stress_pa=5e7,
+                   furniture=Furniture.PEDESTAL, furniture_anchorage=Anchorage.UNANCHORED)  # fmt: skip
+    advice = solve(bust, motion.scaled(1.5, "more"))
+    assert advice.measure not in ("remove", "clearance")
+    assert advice.sentence.startswith(ANCHORED) is (mass > 10.0)
