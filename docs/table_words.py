@@ -17,6 +17,7 @@ TABLE_WORDS = {
     "dispersion": "What a fragility curve's dispersion is made of.",
     "efforts": "Hours, cost and trade of each measure, of one that is not named, and of setting out in a gallery.",
     "fills": "How much of its outline a thing of some materials fills, where its class alone says too much.",
+    "finishes": "Paint, gilding and lacquer: by which words they are told, and which fixings are not for them.",
     "fixings": "What wax, putty, pins, ties, clips, brackets and clamps hold, and which materials they harm.",
     "fragility": "Published medians and dispersions that stand beside the computed ones.",
     "friction": "Friction between object and surface (Table 3 of the paper, handbooks and judgement).",

@@ -12,7 +12,7 @@ from functools import cache
 
 from pipeline.analysis.bodies import SOFT, body, on_floor
 from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
-from pipeline.analysis.footing import base_extents, half_widths
+from pipeline.analysis.footing import base_extents, half_widths, rolling
 from pipeline.analysis.furniture import furniture_of, in_furniture
 from pipeline.analysis.hanging import HangingGuess, hanging_estimates, hanging_of, swings
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
@@ -237,7 +237,10 @@ class _Builder:
     def _friction(self) -> None:
         item = self.item
         friction = self._known("friction", "friction", "-")
-        if friction is None:
+        wheels = rolling(item)
+        if friction is None and wheels is not None:
+            friction = wheels.rolls
+        elif friction is None:
             material = base_of(self.values, item) or self.material.friction_as
             stands_on = furniture_of(item, self.row.name, self.support, self.house).furniture
             friction = friction_of(self.values, material, item.surface_material, stands_on)
@@ -390,7 +393,7 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
     shape = body(stands, row, words, support, mount, material_of(item, values))
-    item = on_floor(item, shape)
+    item = on_floor(replace(item, surface_material=laid.surface_material), shape)
     builder = _Builder(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:

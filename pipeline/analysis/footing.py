@@ -7,7 +7,7 @@ the overall size, not all may bear (tables/contacts.csv).
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import cache
+from functools import cache, cached_property
 from math import radians, tan
 from typing import Self
 
@@ -17,7 +17,7 @@ from pipeline.errors import InputError
 from pipeline.records import ContactPolygon, Estimate, Item, Origin
 from pipeline.records import phrases as say
 from pipeline.tables import table
-from pipeline.tables.rows import Entries, Number, checked
+from pipeline.tables.rows import SOME_WORDS, Entries, Number, Optional, checked
 
 ALONG = {
     "half_base_width": 0.0,
@@ -143,8 +143,9 @@ def tilted(found: Mapping[str, Estimate], slope: float, cg_height: Estimate) -> 
 class Bearing(BaseModel):
     """How much of the base that is assumed of an object may really bear (a row of tables/contacts.csv).
 
-    words   : in an object's name, title or medium, by which it is known
+    words   : in an object's name, title, medium or display, by which it is known; * is up to three words
     classes : else the classes of which it is assumed
+    rolling : friction that keeps it from rolling away [-], None where it does not roll
     """
 
     contact: str
@@ -154,13 +155,29 @@ class Bearing(BaseModel):
     share: Number = Field(gt=0.0, le=1.0)
     low: Number = Field(gt=0.0)
     high: Number = Field(le=1.0)
+    rolling: Optional
+    rolling_low: Optional
+    rolling_high: Optional
     source: str = Field(min_length=1)
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
         if not self.low <= self.share <= self.high:
             raise InputError(f"low <= share <= high does not hold ({self.low:g} {self.share:g} {self.high:g})")
+        ends = (self.rolling_low, self.rolling, self.rolling_high)
+        known = [end for end in ends if end is not None]
+        if len(known) not in (0, len(ends)) or known != sorted(known):
+            raise InputError("rolling_low <= rolling <= rolling_high does not hold; fill all three, or none")
         return self
+
+    @cached_property
+    def rolls(self) -> Estimate | None:
+        """What keeps it from rolling away, as a friction [-]; None where it does not roll."""
+        if self.rolling is None or self.rolling_low is None or self.rolling_high is None:
+            return None
+        note = say.ROLLS(friction=(self.rolling_low, self.rolling, self.rolling_high), contact=self.title)
+        source = f"contacts.csv, {self.contact} ({self.source})"
+        return Estimate.assumed(self.rolling, self.rolling_low, self.rolling_high, "-", note, source)
 
 
 @cache
@@ -195,15 +212,44 @@ def bearing_of(item: Item, object_class: str) -> Bearing | None:
     Bearing or None
         None for a class of which no base is assumed.
     """
-    text = f"{item.object_name} {item.title} {item.medium}"
-    named = next((row for pattern, row in _patterns() if pattern.search(text)), None)
-    return named or next((row for row in bearings() if object_class in row.classes), None)
+    return _named(item) or next((row for row in bearings() if object_class in row.classes), None)
+
+
+def rolling(item: Item) -> Bearing | None:
+    """Return on what an object rolls away, by its words; None for what does not, or is said to be kept from it.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    """
+    found = _named(item)
+    return None if found is None or found.rolls is None or _KEPT.search(item.displayed) else found
+
+
+def _named(item: Item) -> Bearing | None:
+    text = f"{item.object_name}; {item.title}; {item.medium}; {item.displayed}"
+    return next((row for pattern, row in _patterns() if pattern.search(text)), None)
+
+
+_KEPT = re.compile(
+    r"\b(?:chocked|chocks?|blocked|on (?:\w+ )?blocks|locked|brakes? on|off its wheels|in (?:castor|caster) cups|"
+    r"verkeilt|festgestellt|gebremst|aufgebockt|calée?s?|bloquée?s?|freinée?s?|bloccat[aeio]|frenat[aeio]|calzad[ao]s?|"
+    r"bloquead[ao]s?|frenad[ao]s?)\b",
+    re.IGNORECASE,
+)
+"""What is said of wheels that do not roll."""
 
 
 @cache
 def _patterns() -> tuple[tuple[re.Pattern[str], Bearing], ...]:
-    named = ((row, "|".join(map(re.escape, row.words))) for row in bearings() if row.words)
-    return tuple((re.compile(rf"\b(?:{words})\b", re.IGNORECASE), row) for row, words in named)
+    out = []
+    for row in bearings():
+        words = (re.escape(word).replace(r"\*", SOME_WORDS) for word in row.words)
+        # Japanese parts no words from each other.
+        pattern = "|".join(word if word >= "\u2e80" else rf"\b{word}\b" for word in words)
+        out += [(re.compile(pattern, re.IGNORECASE), row)] if pattern else []
+    return tuple(out)
 
 
 def _borne(side: Estimate, item: Item, object_class: str) -> Estimate:

@@ -86,6 +86,9 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect) -> MountGuess | N
         return None
     if told is not None:
         return MountGuess(rows[Mount(str(told.value))], Origin.STATED)
+    if words is Mount.UNKNOWN:
+        # On a pin or rod: what carries it is told, and not whether that holds it.
+        return MountGuess(rows[words], Origin.MEASURED)
     if item.support is not None:
         way = MOUNTED_BY.get(item.support)
         if way is None or (way is Mount.SECURED and item.section_width_m is not None):

@@ -18,8 +18,11 @@ from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, bends
+from pipeline.mitigate.measures.clearance import hung_by
+from pipeline.mitigate.measures.fixings import FINISHED, finishes
 from pipeline.mitigate.measures.remove import LAST_RESORTS
 from pipeline.mitigate.proposals import (
+    STANDING,
     UNCONCERNED,
     Candidate,
     Case,
@@ -68,6 +71,9 @@ HELD_FIRST = (
 
 UNWEIGHED = 2.0
 """Largest over best estimate of an assumed mass from which on whoever builds for a force is told so."""
+
+TAKES_ALONG = 10.0
+"""Mass [kg] from which on nothing is fixed to loose furniture: that may be as light, and falls with it; judgement."""
 
 ANCHORED = "Fasten what it stands in to the floor or a wall first."
 """Comes before the sentence of a measure that is enough only where its furniture is fastened too."""
@@ -308,6 +314,8 @@ class _Search:
             return UNKNOWN_FREQUENCY
         if measure.isolator and any(may_fall(one.findings) for one in unit):
             return refused(N_("what it would stand in is not fastened and may fall"))
+        if measure.fastens and any(_takes_along(one) for one in unit):
+            return refused(N_("what it would be fixed to is not fastened and may fall"))
         return measure.propose_shared(unit, self.runner) if measure.shared else measure.propose(unit[0], self.runner)
 
     def settles(self) -> None:
@@ -425,6 +433,9 @@ class _Search:
                 if worst > numbers.get("movement", (0.0, "m"))[0]:
                     numbers |= {"worst": (worst, "m")}
                     more = f" {OF_MEAN}{more}"
+            if measure.touches and one.scene.support in STANDING and finishes(one.scene.item, self.runner.values):
+                more = f" {FINISHED}{more}"
+            more = f"{hung_by(one.scene) if measure.for_room else ''}{more}"
             first = f"{UPPER_FIRST} " if say.TWO_BODIES() in one.scene.assumptions else ""
             if held_as_displayed(one.scene.item, one.scene.support):
                 first = f"{HELD_FIRST} {first}"
@@ -471,6 +482,12 @@ def _filled(sentence: str, words: Mapping[str, str]) -> str:
         return found[0] if text is None else text.replace("{", "{{").replace("}", "}}")
 
     return re.sub(r"{(\w+)}", said, sentence)
+
+
+def _takes_along(one: Deficiency) -> bool:
+    """Say whether what an object would be fixed to is loose, and light enough to be taken along by it."""
+    mass = one.scene.parameters.get("mass")
+    return mass is not None and mass.value >= TAKES_ALONG and may_fall(one.findings)
 
 
 def _unweighed(mass: Estimate) -> bool:

@@ -43,6 +43,7 @@ from pipeline.records.scene import (
     Provenance,
     Scene,
     Support,
+    Surface,
     times_too_thin,
     too_thin,
 )
@@ -121,6 +122,7 @@ __all__ = [
     "Spacing",
     "State",
     "Support",
+    "Surface",
     "Tally",
     "Trials",
     "Urgency",

@@ -49,6 +49,26 @@ class Furniture(StrEnum):
     RAIL = "rail"
 
 
+class Surface(StrEnum):
+    """Surface that an object stands on, as friction.csv names it, in small letters."""
+
+    TERRAZZO = "terrazzo"
+    MOSAIC = "mosaic"
+    STONE = "stone"
+    CONCRETE = "concrete"
+    WOOD = "wood"
+    PLYWOOD = "plywood"
+    FORMICA = "formica"
+    GLASS = "glass"
+    ACRYLIC = "acrylic"
+    METAL = "metal"
+    ALUMINUM = "aluminum"
+    CARPET = "carpet"
+    FABRIC = "fabric"
+    FELT = "felt"
+    RUBBER = "rubber"
+
+
 class Anchorage(StrEnum):
     """Whether furniture is fastened to its floor or a wall."""
 

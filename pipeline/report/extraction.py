@@ -16,10 +16,20 @@ from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.installed import ON_TOP
 from pipeline.mitigate.measures import MEASURES
+from pipeline.mitigate.measures.fixings import FINISHED
 from pipeline.mitigate.measures.horizontal_isolator import GENERIC
 from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
-from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, ONLY_HERE, SIZED, UPPER_FIRST
+from pipeline.mitigate.search import (
+    ANCHORED,
+    AT_BEST,
+    HEAVIEST,
+    HELD_FIRST,
+    OF_MEAN,
+    ONLY_HERE,
+    SIZED,
+    UPPER_FIRST,
+)
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import UNTOLD_ISOLATOR, Anchorage, ChartFigure, Item, Support
@@ -89,7 +99,18 @@ def _of_measures() -> Iterator[str]:
             yield sentence.replace("{what}", IT).replace("{product}", GENERIC).replace(" {how}", "")
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
-    yield from (ONLY_HERE, AT_BEST, SIZED, HEAVIEST, OF_MEAN, ANCHORED, NAMED_FIRST, UPPER_FIRST, HELD_FIRST)
+    yield from (
+        FINISHED,
+        ONLY_HERE,
+        AT_BEST,
+        SIZED,
+        HEAVIEST,
+        OF_MEAN,
+        ANCHORED,
+        NAMED_FIRST,
+        UPPER_FIRST,
+        HELD_FIRST,
+    )
     yield from (row.care for row in fixing_strengths().values())
 
 

@@ -132,8 +132,13 @@ _UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 _FINISH = re.compile(
     r"\b(?:\w+-|(?:tin|lead|salt|silver|copper|iron)\s+)(?=glaze)"
     r"|\b\w+-(?:plated|coated|painted|leafed|fired|colou?red|toned|inlaid|trimmed|mounted|lined)\b"
-    r"|\b(?:gold|silver|metal|copper|aluminium)\s+(?:leaf|paint|ground|dust|foil|powder|thread|lacquer)\b"
+    r"|\b(?:gold|silver|metal|copper|aluminium)\s+(?:leaf|paint|ground|dust|foil|powder|thread|lacquer|gelatin|prints?)\b"
     r"|\b(?:glass|enamel|ceramic|porcelain)\s+eyes\b|\b(?:Blattgold|Glasaugen|feuille d'or|foglia d'oro|pan de oro)\b"
+    # What is drawn or painted with lies on what the thing is made of: "ink and gold on paper".
+    r"|\b(?:gold|silver|oro|argento|or|argent|plata|Silber)\b(?=\s+(?:paper|silk)\b"
+    r"|(?:\W+\w+){0,4}?\W+(?:on|over|su|sur|auf|sobre)\W+(?:gold\W+|silver\W+)?(?:paper|silk|canvas|panel|wood|vellum|"
+    r"parchment|linen|cotton|cloth|lacquer|Papier|Seide|Holz|Leinwand|papier|soie|bois|toile|carta|seta|legno|tela|"
+    r"tavola|papel|seda|madera|lienzo)\b)"
     r"|\b(?:yeux|occhi|ojos)\s+(?:de|en|di|in)\s+(?:verre|vetro|vidrio|cristal)\b|金箔|金泥|玉眼",
     re.IGNORECASE,
 )

@@ -75,6 +75,29 @@ def test_each_quantity_has_its_own_rule() -> None:
     assert found.statements == ("it stands in a showcase, by the house rule for class vessel (A. Smith, 2031-05-01)",)
 
 
+@pytest.mark.parametrize(("surface", "low", "best", "high"), [("glass", 0.12, 0.3, 0.6), ("carpet", 0.25, 0.45, 0.75)])
+def test_a_rule_states_what_lies_below(surface: str, low: float, best: float, high: float) -> None:
+    """Ceramic on that, as friction.csv has it; who says so is told, and a friction that was measured goes before."""
+    found = scene(VASE, rule(gallery="East", surface=surface))
+    grip = found.parameters["friction_static"]
+    assert (grip.low, grip.value, grip.high) == (low, best, high)
+    assert found.statements == (f"it stands on {surface}, by the house rule for gallery East (A. Smith, 2031-05-01)",)
+    assert friction(VASE, rule(gallery="East", surface=surface), rule(gallery="East", friction=0.5)) == 0.5
+
+
+def test_a_record_says_what_lies_below_before_a_rule() -> None:
+    stone = replace(VASE, surface_material="marble floor")
+    found = scene(stone, rule(gallery="East", surface="glass"))
+    assert found.parameters["friction_static"].value == 0.40  # Ceramic on stone
+    assert any("surface: its record says stone, which is used" in note for note in found.statements)
+    assert not scene(stone, rule(gallery="East", surface="stone")).statements
+
+
+def test_a_surface_that_there_is_not_is_refused() -> None:
+    with pytest.raises(ValidationError, match="terrazzo"):
+        rule(gallery="East", surface="ice")
+
+
 @pytest.mark.parametrize(
     "criteria",
     [

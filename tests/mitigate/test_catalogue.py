@@ -71,7 +71,7 @@ def test_a_museums_row_replaces_ours(tmp_path: Path, motion: Motion) -> None:
         (MEASURES.replace("source", "source,extra") + "x," * 10 + "x\n", "column 'extra' is not known"),
         (
             MEASURES + "glue,1,Glue,,,,,w,Glue it.,s\n",
-            "line 2, measure 'glue': column 'like': is empty, and nothing is known .*use one of clearance",
+            "line 2, measure 'glue': column 'like': is empty, and nothing is known .*use one of chocks",
         ),
         (
             MEASURES + 2 * "fasten,1,F,,,,,w,Fix.,s\n",

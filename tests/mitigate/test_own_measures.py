@@ -184,7 +184,7 @@ def test_what_is_no_measure_is_refused_with_its_remedy() -> None:
         ("museum_hook,,1,T,,,,,,S,s", "line 2, measure 'museum_hook': column 'like': is empty, and nothing is known"),
         (
             "museum_hook,hook,1,T,,,,,,S,s",
-            "column 'like': must be the measure that it is a kind of, one of clear",
+            "column 'like': must be the measure that it is a kind of, one of chock",
         ),
         (
             "museum_hook,remove,1,T,,,,,,S,s",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from pipeline.analysis.house.rule import Span
-from pipeline.records import Anchorage, Estimate, Furniture, Hanging, Item, Mount, Origin, Scene, Support
+from pipeline.records import Anchorage, Estimate, Furniture, Hanging, Item, Mount, Origin, Scene, Support, Surface
 from pipeline.records import phrases as say
 
 _WORDS: Mapping[StrEnum, str] = {
@@ -24,6 +24,7 @@ _WORDS: Mapping[StrEnum, str] = {
     Furniture.RAIL: "hangs from a rail",
     Anchorage.ANCHORED: "stands in furniture that is fastened",
     Anchorage.UNANCHORED: "stands in furniture that is not fastened",
+    **{one: f"stands on {one.value}" for one in Surface},
     Mount.LYING: "lies on its largest face",
     Mount.STANDING: "stands by itself as its height says",
     Mount.LEANING: "leans on a stand or against a backing",
@@ -89,10 +90,13 @@ class HouseEffect:
         return repr((sorted((about, repr(one)) for about, one in self.stated.items()), self.notes))
 
     def laid_over(self, item: Item) -> Item:
-        """Return a record with what is stated where it says nothing, as far as it decides which models are tried."""
+        """Return a record with what is stated where it says nothing: how it is held, and what is below it."""
         held = self.stated.get("held")
         if held is not None:
             item = replace(item, support=Support(str(held.value)))
+        surface = self.stated.get("surface")
+        if surface is not None:
+            item = replace(item, surface_material=str(surface.value))
         return item
 
     def hanging(self, item: Item) -> Hanging | None:

@@ -11,11 +11,12 @@ from fnmatch import translate
 from math import isclose, isnan, nan
 
 from pipeline.analysis.house.effect import HouseEffect, HouseStatement
-from pipeline.analysis.house.rule import ABOVE, CRITERIA, QUANTITIES, SLOTS, STANDING, HouseRule, Span
+from pipeline.analysis.house.rule import ABOVE, CRITERIA, QUANTITIES, SLOTS, STANDING, WORDS, HouseRule, Span
 from pipeline.analysis.rule_table import stuff, words_of
 from pipeline.errors import InputError
 from pipeline.quantities import figures
-from pipeline.records import Furniture, Item, Mount, Support
+from pipeline.records import Furniture, Item, Mount, Support, Surface
+from pipeline.tables.surface_rows import surfaces_in
 
 _ON_WALLS = frozenset({Furniture.WALL, Furniture.RAIL})
 
@@ -144,7 +145,8 @@ class HouseRules:
         if held is not None:
             support = Support(str(held.value))
             matching = self._matching(item, object_class, support)
-        for about in ("hanging", "furniture", "furniture_anchorage", *(["mount"] if mounts else []), *QUANTITIES):
+        words = (name for name in WORDS if name != "held" and (mounts or name != "mount"))
+        for about in (*words, *QUANTITIES):
             if about not in SLOTS:
                 out.weigh(matching, about, support)
         return HouseEffect(
@@ -227,7 +229,7 @@ def _applies(name: str, value: Span | StrEnum, support: Support) -> bool:
         return True
     if name == "hanging":
         return support is Support.HUNG
-    if name in ("furniture_anchorage", "mount"):
+    if name in ("furniture_anchorage", "surface", "mount"):
         return support in STANDING
     if name == "furniture":
         return support in (ABOVE if value in _ON_WALLS else STANDING)
@@ -240,6 +242,11 @@ def _recorded(item: Item, name: str) -> float | StrEnum | None:
         return item.support
     if name == "mount":
         return None if item.support is None else MOUNTED_BY.get(item.support)
+    if name == "surface":
+        told = surfaces_in(item.surface_material, of_surface=True)
+        # In words that the table does not know it is recorded, but nothing to compare with.
+        known = next((one for one in Surface if one.value in told), nan)
+        return known if item.surface_material.strip() else None
     if name in SLOTS:
         length: float | None = getattr(item, SLOTS[name])
         # Without a height it is recorded, but nothing to compare with.

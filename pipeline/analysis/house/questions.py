@@ -9,7 +9,7 @@ from statistics import median
 from typing import Any
 
 from pipeline.analysis.house.rule import QUANTITIES, STANDING
-from pipeline.records import Anchorage, Furniture, Hanging, MeasurementRequest, Mount, Origin, Scene, Support
+from pipeline.records import Anchorage, Furniture, Hanging, MeasurementRequest, Mount, Origin, Scene, Support, Surface
 
 MANY = 5
 """Objects of which the same is asked, from which one rule is asked for first."""
@@ -36,6 +36,7 @@ VOCABULARIES: Mapping[str, Sequence[str]] = {
     "hanging": tuple(Hanging),
     "furniture": tuple(Furniture),
     "furniture_anchorage": tuple(Anchorage),
+    "surface": tuple(Surface),
     "held": tuple(Support),
     "mount": tuple(way for way in Mount if way is not Mount.UNKNOWN),
 }

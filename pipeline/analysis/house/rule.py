@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, StrictFloat, model_validator
 
 from pipeline.errors import InputError
-from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support
+from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support, Surface
 
 STANDING = frozenset({Support.FREESTANDING, Support.FASTENED, Support.ISOLATED})
 ABOVE = frozenset({Support.HUNG, Support.SUSPENDED})
@@ -30,7 +30,7 @@ QUANTITIES: Mapping[str, tuple[str, frozenset[Support]]] = {
 }
 """What a rule may state as a number: its unit, and of objects that are held how it can be."""
 
-WORDS = ("hanging", "furniture", "furniture_anchorage", "held", "mount")
+WORDS = ("hanging", "furniture", "furniture_anchorage", "surface", "held", "mount")
 """What a rule may state as a word of a vocabulary."""
 
 SLOTS = {"cg_ratio": "cg_height_m", "suspension_ratio": "suspension_length_m"}
@@ -115,6 +115,9 @@ class HouseRule(BaseModel):
     furniture: Furniture | None = Field(default=None, description="what they stand on or in, or hang from")
     furniture_anchorage: Anchorage | None = Field(
         default=None, description="whether that furniture is fastened to its floor or a wall"
+    )
+    surface: Surface | None = Field(
+        default=None, description="what lies under them, from which their friction is found where nobody measured it"
     )
     held: Support | None = Field(default=None, description="how they are held, where their records do not say it")
     mount: Mount | None = Field(

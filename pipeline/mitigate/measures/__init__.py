@@ -12,6 +12,7 @@ from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.ballast import Ballast
 from pipeline.mitigate.measures.base import Measure
 from pipeline.mitigate.measures.brace import Brace
+from pipeline.mitigate.measures.chocks import Chocks
 from pipeline.mitigate.measures.clearance import Clearance
 from pipeline.mitigate.measures.close_hooks import CloseHooks
 from pipeline.mitigate.measures.fasten import Fasten
@@ -63,6 +64,7 @@ def checked(value: object) -> type[Measure]:
 MEASURES: Registry[type[Measure]] = Registry(
     "kouros.measures",
     (
+        Chocks,
         Clearance,
         Anchor,
         RubberPads,

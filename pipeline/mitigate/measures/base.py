@@ -90,6 +90,8 @@ class Measure(ABC):
         Whether it is worth advising where only the assumed room, or furniture that may fall, leaves the verdict open.
     fastens : bool
         Whether it holds an object: where nothing else is sure, it is advised if it passes by the best estimates.
+    touches : bool
+        Whether something presses on the object, rubs it or sticks to it: what is painted or gilded is told so.
     isolator : str
         Model of what it puts under an object; "" for nothing.
     mounts : bool
@@ -110,6 +112,7 @@ class Measure(ABC):
     shared: ClassVar[bool] = False
     for_room: ClassVar[bool] = False
     fastens: ClassVar[bool] = False
+    touches: ClassVar[bool] = False
     isolator: ClassVar[str] = ""
     mounts: ClassVar[bool] = False
     last_resort: ClassVar[bool] = False

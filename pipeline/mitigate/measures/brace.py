@@ -53,6 +53,7 @@ class Brace(Measure):
     limits = 1
     limit_unit = "m"
     fastens = True
+    touches = True
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held at its base, its section bending a quarter as much, and swaying faster."""

@@ -21,6 +21,18 @@ LIGHT, HALL = 50.0, 2.0
 HAND = 0.10
 """Room that is spared around anything [m]; more only around what is itself as wide: judgement."""
 
+TWICE = "Its hook, its chain or cable and their anchor in the ceiling must bear at least twice its weight."
+"""Follows the sentence of a measure that lets what hangs from above swing.
+
+By integrations under the eleven motions of the demonstration: 1.2 to 1.3 times on the mean and 1.7 at most, with a
+pendulum of half a metre and more.
+"""
+
+
+def hung_by(scene: Scene) -> str:
+    """Return what is said of what an object hangs by that is let swing from above, behind a space; "" of others."""
+    return f" {TWICE}" if scene.support is Support.SUSPENDED else ""
+
 
 class Clearance(Measure):
     """Give it the room that it needs.

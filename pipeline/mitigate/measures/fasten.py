@@ -21,6 +21,7 @@ class Fasten(Measure):
     name = "fasten"
     gives = HOLDS
     fastens = True
+    touches = True
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held at its base."""

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from pipeline.analysis.classify import material_of
+from pipeline.analysis.footing import rolling
 from pipeline.analysis.model_runs import run_model
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
 from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, bends, held, knows_section
@@ -21,6 +22,8 @@ from pipeline.records import Check, Estimate, Finding, Item, Scene, Support
 from pipeline.records import phrases as say
 from pipeline.records.numerics import HISTORIES
 from pipeline.tables.assumed import AssumedValues
+from pipeline.tables.finish_rows import FinishRow, finishes_in
+from pipeline.tables.surface_rows import surfaces_in
 
 HOLDS = ("force", "moment")
 """Numbers of a measure that holds an object at its base."""
@@ -37,6 +40,16 @@ CLOTH = N_("paper, textile or leather")
 
 HARMLESS = "Nothing is known against it on such a material."
 """What is said of a fixing on a material that it neither harms nor needs care on."""
+
+
+FINISHED = (
+    "It has paint, gilding or lacquer: have a conservator say first where it may be touched; nothing may press on "
+    "such a layer, rub it or stick to it."
+)
+"""Follows the sentence of a measure that touches a thing whose surface comes off."""
+
+UNSCREWED = frozenset({"glass"})
+"""Surfaces into which nobody screws: rows of surfaces.csv, in small letters."""
 
 
 def force_and_moment(scene: Scene, runner: TrialRunner, findings: Sequence[Finding]) -> Numbers:
@@ -172,7 +185,12 @@ class Fixing(Measure, ABC):
 
     gives: ClassVar[tuple[str, ...]] = ("pieces", "size", "margin", *HOLDS, "care")
     fastens: ClassVar[bool] = True
+    touches: ClassVar[bool] = True
     phrases: ClassVar[tuple[str, ...]] = (SIDEWAYS, TIPPING, HARMLESS)
+    at_foot: ClassVar[bool] = True
+    """Whether its pieces hold an object at its foot."""
+    screwed: ClassVar[bool] = False
+    """Whether its pieces are screwed to what the object stands on."""
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held at its base."""
@@ -222,11 +240,17 @@ class Fixing(Measure, ABC):
             return refused(N_("objects of its kind cannot be held so"))
         if not knows_section(scene) or not {"half_width", "cg_height"} <= set(scene.parameters):
             return UNKNOWN_SECTION
-        material = touched(scene.item, runner.values)
+        if self.at_foot and rolling(scene.item) is not None:
+            return refused(N_("it stands on wheels, and has no foot to be held by"))
+        if self.screwed and UNSCREWED.intersection(surfaces_in(scene.item.surface_material, of_surface=True)):
+            return refused(N_("it stands on glass, into which nothing is screwed"))
+        material, lies_on_it = touched(scene.item, runner.values), finishes(scene.item, runner.values)
         if material in self.strength.harms:
             return refused(say.HARMS(material=CLOTH if material == "paper" else material))
+        if any(self.strength.fixing in one.harms for one in lies_on_it):
+            return refused(N_("it harms paint and lacquer"))
         demand = HoldingDemand.of(scene, runner)
-        care = self.strength.care if material in self.strength.care_for else HARMLESS
+        care = self.strength.care if material in self.strength.care_for else "" if lies_on_it else HARMLESS
         found = (self._candidate(one, demand, care, worst) for worst in (True, False))
         candidates = tuple(candidate for candidate in found if candidate is not None)
         if candidates:
@@ -311,6 +335,13 @@ def dot(size: float) -> float:
 def touched(item: Item, values: AssumedValues) -> str:
     """Return the name of the material that a fixing touches: of its base where that is recorded."""
     return (values.material_in(item.base_material) or material_of(item, values)).name
+
+
+def finishes(item: Item, values: AssumedValues) -> tuple[FinishRow, ...]:
+    """Return what lies on an object's surface and comes off where it is touched: paint, gilding, lacquer."""
+    text = f"{item.material}; {item.medium}"
+    made_of = {one.name for one in values.materials_in(text)} | {touched(item, values)}
+    return finishes_in(text, frozenset(made_of))
 
 
 def _times(capacity: float, demand: float) -> float:

@@ -23,6 +23,7 @@ class Hold(Measure):
     name = "hold"
     gives = ("times",)
     fastens = True
+    touches = True
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held by its mount."""

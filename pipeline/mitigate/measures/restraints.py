@@ -8,8 +8,10 @@ from pipeline.analysis.classify import models_of
 from pipeline.mitigate.measures.adhesives import LEVER
 from pipeline.mitigate.measures.base import exactly, with_parameters
 from pipeline.mitigate.measures.fixings import Fixing, HoldingDemand, Reach
+from pipeline.mitigate.proposals import Deficiency, Proposal, refused
+from pipeline.mitigate.trials import TrialRunner
 from pipeline.models.common import N_
-from pipeline.records import Scene, Support
+from pipeline.records import Furniture, Scene, Support
 
 BEARING = 0.25
 """Share of the pieces round an object that bear a push at least.
@@ -29,6 +31,7 @@ class Pins(Fixing):
     """Keep it from sliding by padded pins round its foot: only what does not rock, as they hold nothing down."""
 
     name = "pins"
+    screwed = True
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it free to rock and not to slide; its section bears the push."""
@@ -59,18 +62,21 @@ class Clips(_RoundTheBase):
     """Hold its foot by padded clips bent over it."""
 
     name = "clips"
+    screwed = True
 
 
 class Clamps(_RoundTheBase):
     """Clamp its base by padded clamps."""
 
     name = "clamps"
+    screwed = True
 
 
 class Ties(Fixing):
     """Tie it down to all sides by monofilament at about its centre of gravity."""
 
     name = "ties"
+    at_foot = False
 
     def reach(self, scene: Scene, pieces: int, size: float, worst: bool) -> Reach:  # noqa: ARG002
         """Return the ties that pull at a time, and their moment about the base."""
@@ -83,6 +89,13 @@ class Brackets(Fixing):
     """Fix its top to the wall behind it."""
 
     name = "brackets"
+    at_foot = False
+
+    def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
+        """Propose them for what stands on the floor: the back of a case, a pedestal or a shelf is no wall."""
+        if one.scene.support is Support.FREESTANDING and one.scene.furniture not in (None, Furniture.FLOOR):
+            return refused(N_("it does not stand on the floor, at a wall that it could be fixed to"))
+        return super().propose(one, runner)
 
     def reach(self, scene: Scene, pieces: int, size: float, worst: bool) -> Reach:  # noqa: ARG002
         """Return all of them, and their moment about the base."""

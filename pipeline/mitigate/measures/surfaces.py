@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from pipeline.analysis.classify import material_of
+from pipeline.analysis.footing import rolling
 from pipeline.mitigate.measures.base import FRICTION, NOT_FREE, Measure, movement, on_surface
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
@@ -34,6 +35,8 @@ class _RougherSurface(Measure, ABC):
         """Return why no surface suits it, None where one may."""
         if one.scene.support is not Support.FREESTANDING:
             return NOT_FREE
+        if rolling(one.scene.item) is not None:
+            return refused(N_("it rolls, whatever its wheels stand on"))
         if one.rocks:
             return refused(N_("it may rock: a surface that holds it does not keep it upright"))
         return None

@@ -40,6 +40,7 @@ class WideBase(Measure):
     """
 
     name = "wide_base"
+    touches = True
     gives = ("width", "clearance", *HOLDS)
     limits = 2
     limit_unit = "-"

@@ -6,6 +6,7 @@ from functools import cache
 from pipeline.analysis.classify import object_classes
 from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss, ill_weighed, to_check
 from pipeline.analysis.survey import measurables, size_behind
+from pipeline.models.rigid_body import rocking_harms
 from pipeline.records import Assessment, Band, Harm, IfClass, Likelihood, Mount, Recommendation, Scene
 from pipeline.records.likelihood import CLASS
 from pipeline.report.language import _, local, said
@@ -20,6 +21,9 @@ _RATHER = (Band.ALMOST_CERTAIN, Band.LIKELY)
 
 MOUNT = "mount"
 """What is asked where nobody recorded how a mount holds an object."""
+
+_LEAST_MORE = 0.05
+"""By how much rocking must be likelier than falling for it to be said that rocking counts."""
 
 _LOST = (Harm.FALLS, Harm.BREAKS)
 """What no repair undoes."""
@@ -79,7 +83,7 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
     classes = ", ".join(map(_if_class, found.classes))
     return ChanceView(
         _sentence(found),
-        f"{numbers}{more}.",
+        " ".join(filter(None, (f"{numbers}{more}.", _by_rocking(assessment.scene, found)))),
         clean(found.level),
         check,
         _asked(assessment),
@@ -89,6 +93,17 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         round(100.0 * found.probability, 1),
         bool(found.harm) and found.band in _RATHER and Harm(found.harm) in _LOST,
         bool(slender) or ill,
+    )
+
+
+def _by_rocking(scene: Scene, found: Likelihood) -> str:
+    """Say that rocking itself counts as harm, where more rocks than falls; "" elsewhere."""
+    rocks, falls = (found.states.get(state.value, 0.0) for state in (Harm.ROCKS, Harm.FALLS))
+    if not rocking_harms(scene) or rocks - falls < _LEAST_MORE:
+        return ""
+    return _(
+        "Rocking counts as harm to it, as an edge that lifts strikes back and may chip; where it would do no harm, "
+        "record that it is not susceptible, and falling alone will count."
     )
 
 

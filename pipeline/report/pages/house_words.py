@@ -16,6 +16,7 @@ STATED: Mapping[str, Callable[[], str]] = {
     "hanging": lambda: _("how they hang"),
     "furniture": lambda: _("what they stand on or in"),
     "furniture_anchorage": lambda: _("whether that is fastened"),
+    "surface": lambda: _("what lies under them"),
     "held": lambda: _("how they are held"),
     "mount": lambda: _("how their mount holds them"),
     "friction": lambda: _("friction under them"),

@@ -28,6 +28,7 @@ def was_done(measure: str) -> str:
 # By row of tables/measures.csv, what to do and what was done; looked up in the language of the page.  The museum's own
 # measures are told by their titles.
 _WORDS = {
+    "chocks": (lambda: _("chock its wheels"), lambda: _("on chocked wheels")),
     "clearance": (lambda: _("keep it clear"), lambda: _("kept clear")),
     "anchor": (lambda: _("fasten its furniture"), lambda: _("its furniture fastened")),
     "rubber_pads": (lambda: _("put rubber pads behind it"), lambda: _("rubber pads behind it")),

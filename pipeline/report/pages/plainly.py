@@ -6,6 +6,9 @@ The full sentence of a measure, with the moment, the margin and the friction, st
 from collections.abc import Callable, Iterable, Mapping
 
 from pipeline.mitigate.by_class import NAMED_FIRST
+from pipeline.mitigate.fixing_rows import fixing_strengths
+from pipeline.mitigate.measures.clearance import TWICE
+from pipeline.mitigate.measures.fixings import FINISHED
 from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, SIZED, UPPER_FIRST
 from pipeline.records import Finding, Recommendation
 from pipeline.report.by_hand import by_hand
@@ -42,6 +45,11 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
         Of a measure that is not known here, as one of another package, its title.
     """
     told, numbers = _advised(advice, units)
+    told += [said(row.care) for row in fixing_strengths().values() if row.care in advice.sentence]
+    if TWICE in advice.sentence:
+        told.append(said(TWICE))
+    if FINISHED in advice.sentence:
+        told.append(_("It has paint, gilding or lacquer: ask a conservator first where it may be touched."))
     if OF_MEAN in advice.sentence:
         told.append(_("That is for the mean of the earthquakes: in the worst of them it moves %(worst)s.") % numbers)
     if HEAVIEST in advice.sentence:
@@ -97,17 +105,21 @@ def _advised(advice: Recommendation, units: Units) -> tuple[list[str], dict[str,
 
 # Looked up in the language of the page.
 _PHRASES: Mapping[str, Callable[[], str]] = {
+    "chocks": lambda: _("Chock every wheel on both sides, or set it on padded blocks, so that it does not roll."),
     "clearance": lambda: _("Keep %(clearance)s free on all sides."),
     "anchor": lambda: _("Have what it stands in fastened to the floor or a wall."),
     "rubber_pads": lambda: _("Put rubber pads behind its lower corners."),
     "surface": lambda: _("Stand it on a rougher surface; its entry names one."),
-    "grip_pad": lambda: _("Stand it on a non-slip pad."),
+    "grip_pad": lambda: _("Stand it on a non-slip pad that neither stains nor gives off gases."),
     "pins": lambda: _("Set %(pieces)s padded brass pins round its foot."),
     "wax": lambda: _("Fix it with %(pieces)s dots of microcrystalline wax, %(size)s across, under its base."),
     "putty": lambda: _("Fix it with %(pieces)s pads of museum putty, %(size)s across, under its base."),
-    "ties": lambda: _("Tie it down with %(pieces)s nylon lines: together they must hold %(force)s sideways."),
+    "ties": lambda: _(
+        "Tie it down with %(pieces)s nylon lines round its body, never round a limb, a handle or a neck: together they "
+        "must hold %(force)s sideways."
+    ),
     "clips": lambda: _("Hold its foot by %(pieces)s padded clips: together they must hold %(force)s sideways."),
-    "ballast": lambda: _("Put %(mass)s of ballast low into its base."),
+    "ballast": lambda: _("Put %(mass)s of ballast low into its base, in sealed and padded bags."),
     "wide_base": lambda: _(
         "Fix it to a plate %(width)s wide and deep, with %(clearance)s free around: the fixing must hold "
         "%(force)s sideways."
