@@ -7,7 +7,7 @@ record are what its house rules state (`pipeline.analysis.house`), else they com
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 
 from pipeline.analysis.bodies import SOFT, body, on_floor
@@ -376,28 +376,44 @@ def furniture_kind(
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
     item = as_displayed(item)
     taken, row, said, values = _known_of(item, rules, decided, house)
-    stands = _held(as_told(said.laid_over(item), row), taken.words)
-    support = stands.support or row.support
-    shape = body(stands, row, taken.words, support, mount_of(stands, row, said), material_of(item, values))
-    return furniture_of(on_floor(item, shape), row.name, support, said).furniture
+    stance = _stance(item, row, taken.words, values, said)
+    return furniture_of(on_floor(item, stance.shape), row.name, stance.support, said).furniture
+
+
+@dataclass(frozen=True)
+class _Stance:
+    """How an object is held, as laid over by house rules, as told by the record, and as it is taken in the end."""
+
+    laid: Item
+    by_record: Item
+    taken: Item
+    support: Support
+    mount: MountGuess | None
+    shape: BodyRow | None
+
+
+def _stance(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> _Stance:
+    laid = house.laid_over(item)
+    by_record = as_told(laid, row)
+    taken = _held(by_record, words)
+    support = taken.support or row.support
+    mount = mount_of(taken, row, house)
+    shape = body(taken, row, words, support, mount, material_of(item, values))
+    return _Stance(laid, by_record, taken, support, mount, shape)
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
-    laid = house.laid_over(item)
-    by_record = as_told(laid, row)
-    stands = _held(by_record, words)
-    support = stands.support or row.support
-    mount = mount_of(stands, row, house)
-    models = _tried(stands, row, None if mount is None else mount.row.models)
+    stance = _stance(item, row, words, values, house)
+    support, mount, shape = stance.support, stance.mount, stance.shape
+    models = _tried(stance.taken, row, None if mount is None else mount.row.models)
     if not models:
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
-    shape = body(stands, row, words, support, mount, material_of(item, values))
-    item = on_floor(replace(item, surface_material=laid.surface_material), shape)
+    item = on_floor(replace(item, surface_material=stance.laid.surface_material), shape)
     builder = _Builder(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:
-        builder.missing.extend(_unheld(stands, support))
+        builder.missing.extend(_unheld(stance.taken, support))
     if support is Support.ISOLATED and item.isolator != FRICTION_ISOLATOR.name:
         # Its record has no numbers of springs: as if it stood on the floor it would be told to be off display.
         builder.missing.append(UNTOLD_ISOLATOR)
@@ -408,13 +424,13 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     hanging = None if builder.hanging is None else builder.hanging.known
-    if by_record.support is not laid.support:
+    if stance.by_record.support is not stance.laid.support:
         assumptions.insert(0, say.SUPPORT_TOLD(support=support.value))
     elif mount is not None and mount.note:
         assumptions.insert(0, mount.note)
-    elif by_record.support is None:
+    elif stance.by_record.support is None:
         phrase = say.SUPPORT(support=support.value, told=row.told)
-        if stands.support is not None:
+        if stance.taken.support is not None:
             phrase = say.SUPPORT_FIXED(support=support.value)
         assumptions.insert(0, f"{phrase}; {say.NOT_RECORDED()}")
     if shape is not None and shape.body == PAIR:
