@@ -80,7 +80,7 @@ SURE = 0.5
 RATHER = 0.35
 """The same of a body that is the likeliest class beside a bare material and a free title."""
 FACED = 0.3
-"""Smaller side of a face [m] from which a thing of a bare material that is a slab hangs on a wall (the labels' guide)."""
+"""Smaller side of a face [m] from which a slab of a bare material hangs on a wall (guide of the labels)."""
 BODIES = ("statue", "standing_figure", "figurine", "object")
 """Classes of what a title such as "Dancer" names beside a bare material; all of them stand."""
 FLOOR = 0.02

@@ -111,3 +111,28 @@ def test_names_of_things_in_twelve_languages() -> None:
 def test_names_that_were_mistaken(fields: dict[str, str], taken: str) -> None:
     item = replace(Item("1", "Room", height_m=0.9, width_m=0.4), **fields)  # type: ignore[arg-type]
     assert classify(item).object_class == taken
+
+
+@pytest.mark.parametrize(
+    ("fields", "taken"),
+    [
+        # No size: carpets, curtains and hangings are larger than what lies in a case.
+        ({"object_name": "hanging", "medium": "cotton, embroidered"}, "relief"),
+        ({"object_name": "bed curtain"}, "relief"),
+        ({"object_name": "Teppich"}, "relief"),
+        ({"object_name": "hanging lamp"}, "chandelier"),
+        # A desk as high as a hand is a box.
+        ({"object_name": "writing desk", "height_m": 0.127, "width_m": 0.19, "depth_m": 0.27}, "cabinet"),
+        ({"object_name": "writing desk", "height_m": 0.9, "width_m": 1.2, "depth_m": 0.6}, "table"),
+        # A slab of a bare material hangs, whatever its free title.
+        (
+            {"title": "Untitled", "medium": "raw and stained wood", "height_m": 2.18, "width_m": 2.35, "depth_m": 0.05},
+            "relief",
+        ),
+        ({"title": "Untitled", "medium": "painted wood", "height_m": 1.09, "width_m": 0.58, "depth_m": 0.22}, "statue"),
+        ({"object_name": "telefon ścienny"}, "relief"),
+        ({"object_name": "Dragkista, Kommóða", "height_m": 0.96, "width_m": 1.09, "depth_m": 0.49}, "cabinet"),
+    ],
+)
+def test_things_that_were_mistaken(fields: dict[str, str | float], taken: str) -> None:
+    assert classify(replace(Item("1", "Room"), **fields)).object_class == taken  # type: ignore[arg-type]
