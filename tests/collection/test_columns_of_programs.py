@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from pipeline.collection.guessing.names import named
+from pipeline.collection.guessing.columns import columns_of
+from pipeline.collection.guessing.long_rows import long_form_of
+from pipeline.collection.guessing.names import misspelt, named
 
 NAMES = {
     "TMS": "ObjectNumber=object_number CurLocationString=gallery DisplayDimensions=dimensions OnView=on_display",
@@ -43,3 +45,10 @@ def test_columns_that_say_none_of_it(column: str) -> None:
     """An archive's extent is boxes or feet of shelf, and no size of a thing."""
     found = named(column)
     assert found is None or found.field == ("height_m" if column == "Höhe:" else "")
+
+
+def test_what_looks_like_a_column_and_is_none() -> None:
+    assert misspelt("Auteur") is None
+    # Of the Metropolitan Museum's file: blanks between separators are no kinds of measurements.
+    rows = [["1", " | ", "1800|1810"], ["2", " | ", "1820|1830"]]
+    assert long_form_of(columns_of(["Object Number", "Artist Suffix", "Artist Begin Date"], rows)) is None

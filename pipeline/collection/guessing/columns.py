@@ -11,7 +11,16 @@ from statistics import median
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
-from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, complements, is_length, named, tells_material
+from pipeline.collection.guessing.names import (
+    LENGTH,
+    TEXTS,
+    ColumnMeaning,
+    bare,
+    complements,
+    is_length,
+    named,
+    tells_material,
+)
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of

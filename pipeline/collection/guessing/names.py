@@ -132,9 +132,9 @@ _ELSEWHERE = frozenset({
     "afbeeldingen", "billeder", "iiif", "files", "file", "exhibition", "exhibitions", "exhibit", "ausstellungen",
     "expositions", "mostre", "exposiciones", "exposities", "udstillinger", "related", "parts", "creator",
     "creators", "artist", "artists", "maker", "makers", "people", "person", "agents", "constituents", "production",
-    "author", "documentation", "references", "bibliography", "publications", "literature", "provenance",
-    "inscriptions", "geographies", "geography", "places", "links", "rights", "citations", "children", "parent",
-    "label", "colors",
+    "author", "auteur", "auteurs", "documentation", "references", "bibliography", "publications", "literature",
+    "provenance", "inscriptions", "geographies", "geography", "places", "links", "rights", "citations", "children",
+    "parent", "label", "colors",
 })  # fmt: skip
 """Words of what an object has or what was made of it: a size, number or title within is not the object's."""
 
@@ -307,8 +307,8 @@ def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
         None where no long name is so near.
     """
     form = plain(unit_in(name)[0])
-    if len(form) < _LONG:
-        return None
+    if len(form) < _LONG or _ELSEWHERE.intersection(form.split()):
+        return None  # "Auteur" is no "hauteur"
     # A key is no misspelt word: "classification_id" is no classification.
     last = form.split()[-1]
     known = [one for one in _names() if len(one) >= _LONG and (last not in _OF_KEYS or one.split()[-1] == last)]
