@@ -12,8 +12,8 @@ TABLE_WORDS = {
     "dimension_units": "Units of dimension texts.",
     "dimension_words": "Words of dimension texts.",
     "display_words": "Words by which museums say what is on display, in flags and names of places: yes and no of any "
-    "flag; shown and away; a store whatever else its name says, or where only a code follows (code); what makes a "
-    "store a gallery; who lends.",
+    "flag; shown and away; a store whatever else its name says; a print room or workshop (workroom); or a store where "
+    "only a code follows (code); what makes a store a gallery; who lends.",
     "dispersion": "What a fragility curve's dispersion is made of.",
     "efforts": "Hours, cost and trade of each measure, of one that is not named, and of setting out in a gallery.",
     "fills": "How much of its outline a thing of some materials fills, where its class alone says too much.",

@@ -77,6 +77,10 @@ FACE = 0.5
 """Depth over the smaller side of its face up to which a thing may be a picture in its frame (judgement)."""
 SURE = 0.5
 """Probability from which materials and measures alone say a class, or that a thing is a sculpture or the like."""
+RATHER = 0.35
+"""The same of a body that is the likeliest class beside a bare material and a free title."""
+FACED = 0.3
+"""Smaller side of a face [m] from which a slab of a bare material hangs on a wall (guide of the labels)."""
 BODIES = ("statue", "standing_figure", "figurine", "object")
 """Classes of what a title such as "Dancer" names beside a bare material; all of them stand."""
 FLOOR = 0.02
@@ -291,9 +295,12 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
         return first
     if item.object_name or item.classification or not (item.material or item.medium):
         return None
+    if SHAPES["slab"](item) and min(item.height_m or 0.0, item.width_m or 0.0) >= FACED:
+        # No more than a face of a bare material, which cannot stand on so thin an edge.
+        return next(one for one in chances if one.object_class == "relief")
     # A free title beside a bare material, as works of sculpture have: bronze, "Dancer".
     body = sum(one.probability for one in chances if one.object_class in BODIES)
-    return first if first.object_class in BODIES and body >= SURE else None
+    return first if first.object_class in BODIES and body >= RATHER else None
 
 
 @cache

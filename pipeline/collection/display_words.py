@@ -24,7 +24,7 @@ _CJK = re.compile("[\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7af]")
 @dataclass(frozen=True, slots=True)
 class _Words:
     words: Entries
-    meaning: Literal["yes", "no", "shown", "away", "store", "code", "gallery", "lender", "none"]
+    meaning: Literal["yes", "no", "shown", "away", "store", "workroom", "code", "gallery", "lender", "none"]
 
 
 @cache
@@ -96,6 +96,13 @@ def says_flags(texts: Sequence[str]) -> bool:
     return bool(words) and None not in known and True in known
 
 
+_LONG = 7
+"""Letters from which a word that another begins with is no chance."""
+_NAMES = re.compile(r"\w+")
+_STUDY = "study"
+"""A word of what is open ("study collection") that print rooms have too ("study room")."""
+
+
 @lru_cache(maxsize=65536)
 def says_away(location: str) -> bool:
     """Say whether the name of a place, or what stands in its stead, says that what is there is not on display.
@@ -119,7 +126,12 @@ def says_away(location: str) -> bool:
     named = meant["gallery"].intersection(whole.split())
     if any(_says(whole, phrase, meant["lender"]) for phrase in meant["away"] if " " in phrase or not named):
         return True
-    return any(_is_store(segment) for segment in map(_folded, _SEGMENTS.split(location)) if segment)
+    segments = [segment for segment in map(_folded, _SEGMENTS.split(location)) if segment]
+    # Ausstellungsraum begins as Ausstellung does.
+    rooms = tuple(word for word in meant["gallery"] if len(word) >= _LONG)
+    shown = any(word in meant["gallery"] - {_STUDY} or word.startswith(rooms) for word in _NAMES.findall(whole))
+    kept = any(_says(segment, phrase, frozenset()) for segment in segments for phrase in meant["workroom"])
+    return (kept and not shown) or any(map(_is_store, segments))
 
 
 def _says(whole: str, phrase: str, lenders: frozenset[str]) -> bool:

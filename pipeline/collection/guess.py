@@ -245,7 +245,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         if len(units) == 1:
             document["dimensions"]["unit"] = units.pop()
     taken = {id(column) for column in (*used, *texts)}
-    left = [column for column in columns if id(column) not in taken and column.numbers]
+    left = [column for column in columns if id(column) not in taken and column.filled]
     lost = [one for one in left if is_length(one.name) or (one.numeric and is_side(one.name))]
     if lost:
         told.doubts.append(

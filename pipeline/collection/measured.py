@@ -144,7 +144,8 @@ def _fill_from(
         choice: Choice | None = getattr(chosen, what)
         if choice is None:
             continue
-        found = True
+        # A base alone says no size of what stands on it.
+        found = found or not what.startswith("base")
         if what == "mass" and choice.why.startswith(_PART):
             cells.problems.append(Problem("mass_kg", say.ONLY_PART_WEIGHED(mass=choice.value), say.WEIGH_WHOLE()))
             continue

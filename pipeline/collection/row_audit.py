@@ -8,7 +8,7 @@ from typing import Any
 
 from pipeline.collection.cells import Cells
 from pipeline.collection.display_words import says_away
-from pipeline.collection.guessing.names import is_length
+from pipeline.collection.guessing.names import is_length, named
 from pipeline.collection.mapping import ColumnMap, Mapping
 from pipeline.collection.record import plausible
 from pipeline.collection.source_audit import SIDES, place_key, see_number, see_pairs, unit_columns, unit_named
@@ -25,6 +25,12 @@ EXAMPLES = 3
 def _has_no_field(name: str) -> bool:
     """Whether a column is of lengths or thicknesses, of which the record has none of its own."""
     return is_length(name) or kind_of(name.rpartition(".")[2]) in ("length", "thickness")
+
+
+def _is_left(name: str, mapping: Mapping) -> bool:
+    """Whether a column is of a side that the mapping takes from nowhere, as its cells were not understood: "H. 6.3"."""
+    what = named(name)
+    return what is not None and what.field in SIDES and what.field not in mapping.columns and not mapping.dimensions
 
 
 class RowAudit:
@@ -50,7 +56,11 @@ class RowAudit:
         self.rows: dict[str, list[str]] = {}
         taken = {name for column in mapping.columns.values() for name in (*column.sources, column.unit_column)}
         taken.update(() if mapping.dimensions is None else mapping.dimensions.columns)
-        self._lengths = [(at, name) for at, name in enumerate(header) if name not in taken and _has_no_field(name)]
+        self._lengths = [
+            (at, name)
+            for at, name in enumerate(header)
+            if name not in taken and (_has_no_field(name) or _is_left(name, mapping))
+        ]
 
     def column_of(self, field: str, column: ColumnMap, row: Row, cells: Cells) -> ColumnMap:
         """Return the column of a field with the unit that this row's own column of units names."""

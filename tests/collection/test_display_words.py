@@ -63,3 +63,23 @@ def test_flags_of_display_say_it_by_words() -> None:
     assert not says_flags(["yes", "no"]), "a flag of anything"
     assert not says_flags(["Gallery 1", "Not on view"]), "locations"
     assert not says_flags(["Depot 1", "Depot 2"]), "stores only"
+
+
+@pytest.mark.parametrize(
+    ("place", "away"),
+    [
+        ("Prints & Drawings Study Room, level E", True),
+        ("Print Room", True),
+        ("Kupferstichkabinett", True),
+        ("Graphische Sammlung, Studiensaal", True),
+        ("Gabinetto dei disegni e delle stampe", True),
+        ("Conservation lab", True),
+        ("The Print Room (Gallery 4)", False),
+        ("Kupferstichkabinett, Ausstellungsraum 2", False),
+        ("Study Collection", False),
+        ("Drawing Room", False),
+        ("Library", False),
+    ],
+)
+def test_print_rooms_and_workshops_show_nothing(place: str, away: bool) -> None:
+    assert says_away(place) is away

@@ -96,6 +96,10 @@ def _telling(alike: list[list[DimensionPart]]) -> list[list[DimensionPart]]:
     if upright:
         return upright
     said = [{p.dimension for p in g} - {"unlabelled", "weight"} for g in alike]
+    if any(said):
+        # "Sword: overall length 98 cm, case: 103 cm": a bare number of a named part says less than a labelled one.
+        kept = [(g, one) for g, one in zip(alike, said, strict=True) if one or len(g) > 1 or not g[0].words]
+        alike, said = [g for g, _ in kept], [one for _, one in kept]
     if not any("height" in one or len(one) > 1 for one in said):
         return alike
     return [g for g, one in zip(alike, said, strict=True) if one]

@@ -62,7 +62,7 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
         for part in read.parts
         if part.name in _labels() and part.value
     ]
-    out += [*_base_beside(read, chosen), *_frame_within(read)]
+    out += [*_base_beside(read, chosen), *_frame_within(read), *_without_base(read, chosen)]
     if chosen.height is None:
         out += [
             DimensionNote(
@@ -119,6 +119,18 @@ def _frame_within(read: Dimensions) -> list[DimensionNote]:
         if part not in framed and part.dimension == frame.dimension and part.dimension in ("height", "width")
         and frame.value and part.value and frame.value < _WITHIN * part.value
     ][:1]  # fmt: skip
+
+
+def _without_base(read: Dimensions, chosen: Chosen) -> list[DimensionNote]:
+    """Return a doubt where a size is said to be without a base that nothing else in the text measures."""
+    body = chosen.height or chosen.width
+    told = any(part.name == "with base" or is_base(part.name) for part in read.parts)
+    return [
+        DimensionNote("unused", f"{_shown(part, read)} is without the base, whose own size is not said",
+                      part.start, part.end)
+        for part in read.parts
+        if body and not told and part.start == body.start and part.name == "without base"
+    ]  # fmt: skip
 
 
 def _base_beside(read: Dimensions, chosen: Chosen) -> list[DimensionNote]:

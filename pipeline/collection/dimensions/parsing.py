@@ -92,6 +92,7 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
     groups = _whole(reader.groups)
     _share_last(groups, notes)
     for group in groups:
+        _named_again(group)
         if all(q.unit is not None for q in group.quantities):
             continue
         _share_units(group, notes)
@@ -136,6 +137,24 @@ def _whole(groups: list[Group]) -> list[Group]:
         else:
             out.append(group)
     return out
+
+
+def _named_again(group: Group) -> None:
+    """Let labels name bare numbers that they repeat: "82 x 49.5 x 170 cm; Length: 82 Width: 49.5 Height: 170 cm"."""
+    bare = [q for q in group.quantities if not q.dimension]
+    told = [q for q in group.quantities if q.dimension and q.dimension != "weight"]
+    if len(bare) < 2 or not told or bare[0].start > told[0].start:
+        return
+    pairs = []
+    for q in told:
+        first = next((b for b in bare if b.num * q.den == q.num * b.den), None)
+        if first is None:
+            return
+        bare.remove(first)
+        pairs.append((first, q))
+    for first, q in pairs:
+        first.dimension = q.dimension
+        group.quantities.remove(q)
 
 
 def _is_own(group: Group) -> bool:

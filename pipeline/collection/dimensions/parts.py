@@ -9,6 +9,8 @@ DETAILS = frozenset(
 BASES = frozenset({"base", "foot", "feet", "plinth", "pedestal", "bottom"})
 ROUND = frozenset({"foot", "rim", "mouth", "neck", "opening"})
 _HOLLOW = "inside"
+_SENTENCE = 6
+"""Words beyond which what stands before numbers is no name: "net dimensions exclude lid, stand and mouldings"."""
 _WHOLE = ("with ", "without ")
 
 
@@ -24,4 +26,7 @@ def is_opening(name: str) -> bool:
 
 def is_detail(name: str) -> bool:
     """Say whether a name is that of a part whose size is not the object's."""
-    return not name.startswith(_WHOLE) and (name == _HOLLOW or bool(DETAILS.intersection(name.split())))
+    words = name.split()
+    if len(words) > _SENTENCE:
+        return False
+    return not name.startswith(_WHOLE) and (name == _HOLLOW or bool(DETAILS.intersection(words)))

@@ -73,8 +73,12 @@ class Reader:
                     continue
                 self.label.append(at)
             elif kind == TIME:
-                at = self._leave_out(at, at + 1, "a time, a date or a scale")
-                continue
+                unit = tokens[at + 1].unit if tokens[at + 1].type == UNIT else None
+                if unit is not None and unit.kind == "length":  # 30:40 cm
+                    self.label.append(at)
+                else:
+                    at = self._leave_out(at, at + 1, "a time, a date or a scale")
+                    continue
             elif kind == BREAK:
                 self._break(at)
             elif kind == COMMA:
@@ -295,10 +299,16 @@ class Reader:
         elif len(items) == 1 and phrase.name and phrase.dimensions and group.name != "overall":
             state = group.name.startswith(_BEHIND)
             group.aside = any(other.name == "overall" if state else not other.aside for other in self.groups)
+        group.aside = group.aside or (bool(phrase.name) and self._is_bracketed())
         self.groups.append(group)
         self.current = group
         self.open = []
         return group
+
+    def _is_bracketed(self) -> bool:
+        """Whether numbers stand in brackets behind others: "Length: 235 cm (net 232 cm); Width: 94 cm"."""
+        kinds = [self.tokens[at].type for at in self.label]
+        return not self.fresh and kinds.count(OPEN) > kinds.count(CLOSE)
 
     def _target(self, phrase: Phrase, items: list[DimensionQuantity]) -> Group | None:
         """Return the group that a phrase's numbers may go on with: one of its name; without a name, the last whole."""
@@ -433,9 +443,14 @@ class Reader:
         last = [q for q in group.quantities if q.run == group.quantities[-1].run]
         if last[-1].dimension == "diameter" and is_opening(phrase.name) and all(q.dimension for q in last):
             last = last[-1:]  # "h 17 cm x diameter 9 cm (foot)": what is round is the foot, what is high the whole
+        elif len(phrase.dimensions) == 1 and last[-1].dimension and not any(q.dimension for q in last[:-1]):
+            last = last[-1:]  # '16 x 5 x 4 in. diam. at base': one dimension is of one number
         if group.name != "overall" or len(last) == len(group.quantities) or len(last) > 1:
             return group
         group.quantities = [q for q in group.quantities if q not in last]
+        for q in last:
+            q.run = self.runs
+        self.runs += 1
         self.current = Group("overall", "", set(phrase.qualifiers), last, aside=True)
         self.groups.append(self.current)
         return self.current

@@ -30,6 +30,7 @@ _AND = frozenset({"and", "und", "et", "en", "y", "e", "și"})
 _OF = frozenset({"de", "di", "in", "of", "da", "en"})
 _SPACELESS = "\u3000"
 """Before the letters of the scripts that put no spaces between words."""
+_POWERS = frozenset({"2", "3", "²", "³"})
 _AREAS = frozenset({"sq", "square", "cubic", "cu", "quadrat"})
 
 
@@ -203,6 +204,7 @@ def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuant
             at = _label_behind(tokens, at, quantity, text)
         items.append(quantity)
         following = at + 1 if tokens[at].type == DOT else at
+        following = _past_qualifier(tokens, following)
         if tokens[following].type != JOIN or not _begins(tokens, following + 1):
             break
         at = following + 1
@@ -210,6 +212,19 @@ def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuant
         return None
     fill_units(items)
     return items, at
+
+
+def _past_qualifier(tokens: list[Token], at: int) -> int:
+    """Return the token behind the remark of "45 (max.) x 22 cm" or "45 approx. x 22 cm", else the place itself."""
+    opened = tokens[at].type == OPEN
+    place = at + 1 if opened else at
+    if not _qualifies(tokens[place]):
+        return at
+    while _qualifies(tokens[place]) or tokens[place].type == DOT:
+        place += 1
+    if opened:
+        place = place + 1 if tokens[place].type == CLOSE else at
+    return place if tokens[place].type == JOIN else at
 
 
 def _qualifies(token: Token) -> bool:
@@ -272,6 +287,10 @@ def area_at(tokens: list[Token], at: int) -> int | None:
         None where there is none.
     """
     behind = at + 1
+    unit, power = tokens[behind], tokens[min(behind + 1, len(tokens) - 1)]
+    raised = power.word in _POWERS and power.start == unit.end
+    if raised and tokens[at].type == NUMBER and unit.unit is not None and unit.unit.system == "metric":
+        return behind + 2  # 500 cm3
     if tokens[behind].word not in _AREAS:
         return None
     behind += 1

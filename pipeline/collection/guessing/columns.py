@@ -11,7 +11,16 @@ from statistics import median
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
-from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, complements, named, tells_material
+from pipeline.collection.guessing.names import (
+    LENGTH,
+    TEXTS,
+    ColumnMeaning,
+    bare,
+    complements,
+    is_length,
+    named,
+    tells_material,
+)
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
@@ -325,6 +334,8 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
     words = [c for c in free if c.name.rpartition(".")[2] == IN_WORDS and c.filled]
     if called or words:
         return called or words
+    # "42.2 cm" of a column of lengths would be read as a number without a label, and so as a height.
+    free = [column for column in free if not is_length(column.name)]
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
     best = max(texts, key=lambda c: c.dimensional, default=None)
     return [best] if best is not None and best.dimensional > 0.6 else []

@@ -78,7 +78,8 @@ def _within(columns: Sequence[Column]) -> LongForm | None:
         for column, pieces in apart:
             some = [piece.strip() for one in pieces for piece in one if piece.strip()]
             for name, tells in (("type", kind_of), ("unit", unit_of), ("value", _number)):
-                if name not in found and sum(tells(text) is not None for text in some) >= 0.6 * len(some):
+                # Blanks between separators name nothing: " | ".
+                if some and name not in found and sum(tells(text) is not None for text in some) >= 0.6 * len(some):
                     found[name] = column
                     break
         objects = [c for c in candidates(columns).get("object_number", ()) if c.filled]

@@ -50,6 +50,9 @@ _GLUED = re.compile(r"(\w{3,}?)(?:number|nummer|num|nr|no)")
 _GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Obj|Acc|Ide|Dim|Mea)(?=[A-Z])")
 """Before a name: of which group of fields it is, in systems that write it so (EMu, MuseumPlus): "TitObjectNumber"."""
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
+_TYPED = re.compile(r"(?<=[a-z])(?:Txt|Clb|Vrt|Num|Voc|Lnu)$")
+"""Behind a name in MuseumPlus: of which type it is, "HeightNum", "ObjTechnicalTermClb"."""
+_LABELS = re.compile(r"preferred labels?")
 _REFERENCE = re.compile(r"(?<=[a-z])(?:Ref|Grp|Tab)$")
 """Behind the name of what is told by another table."""
 _SIDE = re.compile(r"([^(（\[]+)[(（\[]([^)）\]]+)[)）\]]")
@@ -129,15 +132,15 @@ _ELSEWHERE = frozenset({
     "afbeeldingen", "billeder", "iiif", "files", "file", "exhibition", "exhibitions", "exhibit", "ausstellungen",
     "expositions", "mostre", "exposiciones", "exposities", "udstillinger", "related", "parts", "creator",
     "creators", "artist", "artists", "maker", "makers", "people", "person", "agents", "constituents", "production",
-    "author", "documentation", "references", "bibliography", "publications", "literature", "provenance",
-    "inscriptions", "geographies", "geography", "places", "links", "rights", "citations", "children", "parent",
-    "label", "colors",
+    "author", "auteur", "auteurs", "documentation", "references", "bibliography", "publications", "literature",
+    "provenance", "inscriptions", "geographies", "geography", "places", "links", "rights", "citations", "children",
+    "parent", "label", "colors",
 })  # fmt: skip
 """Words of what an object has or what was made of it: a size, number or title within is not the object's."""
 
 _HOLDING = frozenset({
     *("name", "value", "text", "label", "term", "content", "preflabel", "displayname", "de", "en", "fr", "keyword"),
-    *("summarydata", "summary", "wert", "valeur", "valore", "valor"),
+    *("summarydata", "summary", "wert", "valeur", "valore", "valor", "previewvrt", "exportclb"),
 })  # fmt: skip
 """Names within a name that say only that its value follows: "object_names.name"."""
 
@@ -304,8 +307,8 @@ def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
         None where no long name is so near.
     """
     form = plain(unit_in(name)[0])
-    if len(form) < _LONG:
-        return None
+    if len(form) < _LONG or _ELSEWHERE.intersection(form.split()):
+        return None  # "Auteur" is no "hauteur"
     # A key is no misspelt word: "classification_id" is no classification.
     last = form.split()[-1]
     known = [one for one in _names() if len(one) >= _LONG and (last not in _OF_KEYS or one.split()[-1] == last)]
@@ -336,7 +339,7 @@ def of_table(table: str, field: str) -> bool:
 
 def path_of(name: str) -> list[str]:
     """Return the names of which the name of a column is a path: "location.onView" as ["location", "onView"]."""
-    return re.split(r"__|\.(?=[^\W\d_]{3}|[^\W\d_]+_)", name.strip("_ ."))
+    return re.split(r"__|(?<=[^\W\d_]{2}):(?=[^\W\d_]{3})|\.(?=[^\W\d_]{3}|[^\W\d_]+_)", name.strip("_ ."))
 
 
 def _forms(name: str) -> Iterator[str]:
@@ -363,6 +366,8 @@ def _forms(name: str) -> Iterator[str]:
     # A path of names: what its last one says, "_currentLocation__onDisplay", "location.onView".
     path = path_of(name)
     if path[-1] != name:
+        if _LABELS.fullmatch(plain(path[-1])):
+            yield plain(path[0])  # the name of what: "ca_storage_locations.preferred_labels"
         yield plain(path[-1])
         yield plain(unit_in(path[-1])[0])
     # "measurement_height", "ca_objects.dimensions.dimensions_height"
@@ -379,6 +384,10 @@ def _forms(name: str) -> Iterator[str]:
     if len(path) > 1 and plain(path[-1]) == "no":
         # The number of what: "ObjectIdentity.Number".
         yield f"{plain(path[-2]).removesuffix(' identity')} no"
+    typed = _TYPED.sub("", path[-1])
+    if typed != path[-1]:
+        yield plain(typed)
+        yield plain(_GROUPED.sub("", typed))
     if _GROUPED.match(path[-1]):
         yield plain(_GROUPED.sub("", path[-1]))
     # What stands in brackets may be a language.

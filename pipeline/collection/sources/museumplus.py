@@ -12,7 +12,7 @@ public clients of the service (museumpy, MIT; mpapi) and of published exports.
 | gallery | ObjCurrentLocationVrt, its group, its vocabulary |
 | image | ObjMultimediaRef or an attachment whose name is that of an image file |
 | dimensions | ObjDimAllVrt, ObjDimensionTxt, the previews of ObjDimAllGrp |
-| height, ... other_measurements | HeightNum, WidthNum, ... of ObjDimAllGrp, with UnitDdiVoc and TypeDimRef |
+| height, ... other_measurements | HeightNum, ..., FirstNum, ... as TypeVoc orders them, of ObjDimAllGrp, UnitDdiVoc |
 """
 
 from __future__ import annotations
@@ -178,6 +178,8 @@ def _said(field: Any) -> str:
     return " ".join(value.split())
 
 
+_ORDERED = ("FirstNum", "SecondNum", "ThirdNum", "FourthNum")
+"""Numbers that the kind of measuring names by their order: "Höhe x Breite x Tiefe"."""
 _KIND_SAID = ("TypeDimRef", "TypeDimRefVoc", "TypeVoc", "TypeDimVoc")
 """Where a measurement may say of what it is."""
 
@@ -195,14 +197,28 @@ def _measured(item: Any, unit: str | None) -> Measurements:
         part = part_of(kind_said.partition("(")[0])
         if part is None and not _names_a_part(kind_said):
             part = ""
-        for field, kind in _KINDS.items():
+        numbers: list[tuple[str, str | None]] = [(field, kind) for field, kind in _KINDS.items() if said.get(field)]
+        ordered = [field for field in _ORDERED if said.get(field)]
+        sides = _sides(kind_said)
+        # An order that names as many sides is believed; other numbers are kept as what nobody could name.
+        numbers += zip(ordered, sides if len(sides) == len(ordered) else [None] * len(ordered), strict=True)
+        for field, kind in numbers:
             if said.get(field):
                 mass = kind == "weight"
                 named = said.get("UnitWeightVoc" if mass else "UnitDdiVoc") or said.get("UnitVoc") or ""
                 if mass and not named:
                     named = said.get("UnitDdiVoc", "") if said.get("UnitDdiVoc") in ("g", "kg") else ""
-                out.take(kind, said[field], named, part, said=f"{kind_said} {kind}".strip())
+                called = f"{kind_said} {kind or ''}".strip()
+                out.take(kind, said[field], named, part, said=called)
     return out
+
+
+def _sides(text: str) -> list[str | None]:
+    """Return which sides a kind of measuring names, in its order: of "Rahmenmaß (Höhe x Breite)" height and width."""
+    inner = text.partition("(")[2].rpartition(")")[0] or text
+    words = inner.replace("×", " x ").replace("/", " x ").replace(",", " x ").split(" x ")
+    sides = [kind_of(word.strip()) for word in words]
+    return sides if all(sides) else []
 
 
 def _names_a_part(text: str) -> bool:

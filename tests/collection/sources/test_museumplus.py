@@ -105,3 +105,32 @@ def test_other_modules_are_no_objects() -> None:
     assert len(list(read_museumplus(io.BytesIO(content), "ria.xml"))) == 1
     with pytest.raises(CollectionError, match="holds no moduleItem"):
         list(read_museumplus(io.BytesIO(b"<application/>"), "ria.xml"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "numbers", "found"),
+    [
+        ("Höhe x Breite x Tiefe", ("25.2", "16.7", "9"), {"height": "25.2 cm", "width": "16.7 cm", "depth": "9 cm"}),
+        ("Objektmaß (Breite x Höhe)", ("16.7", "25.2"), {"height": "25.2 cm", "width": "16.7 cm"}),
+        # Three numbers of which the order names two, or none, are nobody's: they are kept in words.
+        ("Höhe x Breite", ("25.2", "16.7", "9"), {}),
+        ("", ("25.2", "16.7"), {}),
+        ("Rahmenmaß (Höhe x Breite)", ("40", "30"), {}),
+    ],
+)
+def test_numbers_are_named_by_the_order_of_their_kind(
+    kind: str, numbers: tuple[str, ...], found: dict[str, str]
+) -> None:
+    names = ("FirstNum", "SecondNum", "ThirdNum")
+    told = "".join(field(name, number) for name, number in zip(names, numbers, strict=False))
+    item = (
+        '<moduleItem id="7">'
+        + field("ObjObjectNumberTxt", "A 7")
+        + group("ObjDimAllGrp", voc("TypeVoc", kind) + told + voc("UnitDdiVoc", "cm"))
+        + "</moduleItem>"
+    )
+    head, row = read_museumplus(io.BytesIO(f"{HEAD}{item}{TAIL}".encode()), "ria.xml")
+    cells = dict(zip(head.cells, row.cells, strict=True))
+    assert {name: cells[name] for name in ("height", "width", "depth") if cells[name]} == found
+    if not found:
+        assert all(number in " ".join(map(str, row.cells)) for number in numbers)
