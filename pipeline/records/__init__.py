@@ -43,7 +43,7 @@ from pipeline.records.scene import (
     Provenance,
     Scene,
     Support,
-    Surface,
+    SurfaceMaterial,
     times_too_thin,
     too_thin,
 )
@@ -122,7 +122,7 @@ __all__ = [
     "Spacing",
     "State",
     "Support",
-    "Surface",
+    "SurfaceMaterial",
     "Tally",
     "Trials",
     "Urgency",

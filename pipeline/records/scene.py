@@ -49,7 +49,7 @@ class Furniture(StrEnum):
     RAIL = "rail"
 
 
-class Surface(StrEnum):
+class SurfaceMaterial(StrEnum):
     """Surface that an object stands on, as friction.csv names it, in small letters."""
 
     TERRAZZO = "terrazzo"

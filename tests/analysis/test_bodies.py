@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from pipeline.analysis.classify import classify, material_of
+from pipeline.analysis.classify import classify
+from pipeline.analysis.scene_parameters import material_of
 from pipeline.analysis.usual import base_of
 from pipeline.records import Item, Mount, Support
 from pipeline.records import phrases as say

@@ -6,8 +6,9 @@ from typing import Any
 
 import pytest
 
-from pipeline.analysis.classify import NO_MODEL, WHEN_HELD, classify, material_of
+from pipeline.analysis.classify import NO_MODEL, WHEN_HELD, classify
 from pipeline.analysis.footing import bearing_of
+from pipeline.analysis.scene_parameters import material_of
 from pipeline.analysis.survey import measurable_of, measurables
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items

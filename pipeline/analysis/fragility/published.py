@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
-from pipeline.analysis.classify import material_of
+from pipeline.analysis.scene_parameters import material_of
 from pipeline.quantities import G
 from pipeline.records import Scene
 from pipeline.tables import table

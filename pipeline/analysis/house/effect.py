@@ -7,7 +7,17 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from pipeline.analysis.house.rule import Span
-from pipeline.records import Anchorage, Estimate, Furniture, Hanging, Item, Mount, Origin, Scene, Support, Surface
+from pipeline.records import (
+    Anchorage,
+    Estimate,
+    Furniture,
+    Hanging,
+    Item,
+    Mount,
+    Origin,
+    Scene,
+    Support,
+)
 from pipeline.records import phrases as say
 
 _WORDS: Mapping[StrEnum, str] = {
@@ -24,7 +34,7 @@ _WORDS: Mapping[StrEnum, str] = {
     Furniture.RAIL: "hangs from a rail",
     Anchorage.ANCHORED: "stands in furniture that is fastened",
     Anchorage.UNANCHORED: "stands in furniture that is not fastened",
-    **{one: f"stands on {one.value}" for one in Surface},
+    **{one: f"stands on {one.value}" for one in SurfaceMaterial},
     Mount.LYING: "lies on its largest face",
     Mount.STANDING: "stands by itself as its height says",
     Mount.LEANING: "leans on a stand or against a backing",

@@ -15,7 +15,7 @@ from pipeline.analysis.house.rule import ABOVE, CRITERIA, QUANTITIES, SLOTS, STA
 from pipeline.analysis.rule_table import stuff, words_of
 from pipeline.errors import InputError
 from pipeline.quantities import figures
-from pipeline.records import Furniture, Item, Mount, Support, Surface
+from pipeline.records import Furniture, Item, Mount, Support, SurfaceMaterial
 from pipeline.tables.surface_rows import surfaces_in
 
 _ON_WALLS = frozenset({Furniture.WALL, Furniture.RAIL})
@@ -245,7 +245,7 @@ def _recorded(item: Item, name: str) -> float | StrEnum | None:
     if name == "surface":
         told = surfaces_in(item.surface_material, of_surface=True)
         # In words that the table does not know it is recorded, but nothing to compare with.
-        known = next((one for one in Surface if one.value in told), nan)
+        known = next((one for one in SurfaceMaterial if one.value in told), nan)
         return known if item.surface_material.strip() else None
     if name in SLOTS:
         length: float | None = getattr(item, SLOTS[name])

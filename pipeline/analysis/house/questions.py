@@ -9,7 +9,17 @@ from statistics import median
 from typing import Any
 
 from pipeline.analysis.house.rule import QUANTITIES, STANDING
-from pipeline.records import Anchorage, Furniture, Hanging, MeasurementRequest, Mount, Origin, Scene, Support, Surface
+from pipeline.records import (
+    Anchorage,
+    Furniture,
+    Hanging,
+    MeasurementRequest,
+    Mount,
+    Origin,
+    Scene,
+    Support,
+    SurfaceMaterial,
+)
 
 MANY = 5
 """Objects of which the same is asked, from which one rule is asked for first."""
@@ -36,7 +46,7 @@ VOCABULARIES: Mapping[str, Sequence[str]] = {
     "hanging": tuple(Hanging),
     "furniture": tuple(Furniture),
     "furniture_anchorage": tuple(Anchorage),
-    "surface": tuple(Surface),
+    "surface": tuple(SurfaceMaterial),
     "held": tuple(Support),
     "mount": tuple(way for way in Mount if way is not Mount.UNKNOWN),
 }

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, StrictFloat, model_validator
 
 from pipeline.errors import InputError
-from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support, Surface
+from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support, SurfaceMaterial
 
 STANDING = frozenset({Support.FREESTANDING, Support.FASTENED, Support.ISOLATED})
 ABOVE = frozenset({Support.HUNG, Support.SUSPENDED})
@@ -116,7 +116,7 @@ class HouseRule(BaseModel):
     furniture_anchorage: Anchorage | None = Field(
         default=None, description="whether that furniture is fastened to its floor or a wall"
     )
-    surface: Surface | None = Field(
+    surface: SurfaceMaterial | None = Field(
         default=None, description="what lies under them, from which their friction is found where nobody measured it"
     )
     held: Support | None = Field(default=None, description="how they are held, where their records do not say it")

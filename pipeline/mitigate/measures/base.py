@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from math import ceil, isfinite
 from typing import ClassVar
 
-from pipeline.analysis.classify import material_of, models_of
+from pipeline.analysis.classify import models_of
 from pipeline.analysis.flexibility import concentration
 from pipeline.analysis.hanging import OF_HANGING, hanging_estimates, hanging_of
+from pipeline.analysis.scene_parameters import material_of
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.rows import MeasureRow
 from pipeline.mitigate.trials import Trial, TrialRunner

@@ -9,9 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from pipeline.analysis.classify import material_of
 from pipeline.analysis.footing import rolling
 from pipeline.analysis.model_runs import run_model
+from pipeline.analysis.scene_parameters import material_of
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
 from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, bends, held, knows_section
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused

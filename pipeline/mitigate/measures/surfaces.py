@@ -4,8 +4,8 @@ from abc import ABC
 from collections.abc import Mapping
 from typing import ClassVar
 
-from pipeline.analysis.classify import material_of
 from pipeline.analysis.footing import rolling
+from pipeline.analysis.scene_parameters import material_of
 from pipeline.mitigate.measures.base import FRICTION, NOT_FREE, Measure, movement, on_surface
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
