@@ -303,12 +303,14 @@ def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
 
 
 def _cell(value: object) -> str:
-    # Most are texts; there are forty to an object.
+    # There are a hundred to an object, most of them nothing, numbers and texts.
+    if value is None:
+        return ""
+    if type(value) is float:
+        return "" if isnan(value) else repr(value)
     if isinstance(value, str):
         return safe_cell(str(value))
     match value:
-        case None:
-            return ""
         case bool():
             return "true" if value else "false"
         case float() | int():

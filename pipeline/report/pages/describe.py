@@ -389,7 +389,7 @@ class Describer:
             measures=self._measures(assessment),
             figures=self._figures(ordered, assessment.recommendations) if state is State.ACT and fails else (),
             numbers=tuple(self._sayings.number(name, estimate) for name, estimate in estimates),
-            assumptions=tuple(dict.fromkeys(self._sayings.assumed(text) for text in named)),
+            assumptions=tuple(dict.fromkeys(map(self._sayings.assumed, dict.fromkeys(named)))),
             statements=tuple(said(clean(text)) for text in scene.statements),
             missing=tuple(missing_words(clean(m)) for m in scene.missing),
             problems=tuple(
