@@ -342,17 +342,17 @@ def _parquet(name: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
     import pyarrow.parquet as pq
 
     schema = pa.schema([schema_of(name).field(column) for column in _OF_PARTS[name]])
-    columns = [pa.array(_writable([row[field.name] for row in rows], field.type), field.type) for field in schema]
+    columns = [_column([row[field.name] for row in rows], field.type) for field in schema]
     sink = pa.BufferOutputStream()
     pq.write_table(pa.Table.from_arrays(columns, schema=schema), sink, compression="zstd")
     return bytes(sink.getvalue().to_pybytes())
 
 
-def _writable(values: list[Any], kind: Any) -> list[Any]:
+def _column(values: list[Any], kind: Any) -> Any:
     import pyarrow as pa
 
-    if kind == pa.string():
-        return [value if value is None or value.isascii() else encodable(value) for value in values]
-    if pa.types.is_list(kind):
-        return [[encodable(text) for text in value] for value in values]
-    return values
+    try:
+        return pa.array(values, kind)
+    except UnicodeEncodeError:
+        fit = [[encodable(text) for text in one] if isinstance(one, list) else one and encodable(one) for one in values]
+        return pa.array(fit, kind)

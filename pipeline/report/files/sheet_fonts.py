@@ -135,8 +135,11 @@ def draw_text(pdf: Any, at: tuple[float, float], text: str, font: str, size: flo
         from bidi import get_display
 
         line = str(get_display(line))
-    x, y = at[0] - share * width_of(line, font, size), at[1]
-    for piece, name in _runs(line, font):
+    x, y = at[0] - (share and share * width_of(line, font, size)), at[1]
+    *before, (last, of) = list(_runs(line, font)) or [("", font)]
+    for piece, name in before:
         pdf.setFont(name, size)
         pdf.drawString(x, y, piece)
         x += stringWidth(piece, name, size)
+    pdf.setFont(of, size)
+    pdf.drawString(x, y, last)

@@ -1,0 +1,105 @@
+"""What many objects have alike, in words: how they are held, what they stand in or on, what they are taken for."""
+
+from collections.abc import Mapping, Sequence
+
+from pipeline.records import Anchorage, Furniture, Mount, Origin, Support
+from pipeline.report.language import _, said
+from pipeline.report.text import clean, count, words
+
+_POSSIBLE = 0.05
+"""Probability from which another class is named on the page of an object."""
+
+
+def support(of: Support) -> str:
+    """Say in words how an object is held."""
+    told = {
+        Support.FREESTANDING: _("freestanding"),
+        Support.FASTENED: _("fastened"),
+        Support.HUNG: _("hung"),
+        Support.SUSPENDED: _("suspended"),
+        Support.ISOLATED: _("isolated"),
+    }
+    return told[of]
+
+
+def held(by: tuple[Support, Mount | None]) -> str:
+    """Say in words how an object is held where it stands, lies or hangs.
+
+    by : how it is supported, and by what mount where it has one
+    """
+    ways = {
+        Mount.LYING: _("lies on its largest face"),
+        Mount.STANDING: _("stands by itself"),
+        Mount.LEANING: _("leans on a stand or against a backing"),
+        Mount.RESTING: _("rests on its mount, held by nothing else"),
+        Mount.SECURED: _("held on its mount"),
+        Mount.UNKNOWN: _("on a mount that nobody described"),
+    }
+    return support(by[0]) if by[1] is None else ways[by[1]]
+
+
+def furniture(of: tuple[Furniture | None, Origin | None, Anchorage | None]) -> str:
+    """Say in words what an object stands in or on, and where that is known from; "" of what hangs as all such do.
+
+    of : what it is, where that is known from, and whether it is fastened
+    """
+    stands, by, anchorage = of
+    if stands is None or by is None:
+        return ""
+    told = {
+        Furniture.FLOOR: _("on the floor"),
+        Furniture.SHOWCASE: _("in a showcase"),
+        Furniture.PEDESTAL: _("on a pedestal or plinth"),
+        Furniture.SHELF: _("on a shelf"),
+        Furniture.WALL: _("on a wall"),
+        Furniture.RAIL: _("from a rail or the ceiling"),
+    }
+    known = {
+        Origin.MEASURED: _("as recorded"),
+        Origin.DERIVED: _("as its record names a case"),
+        Origin.STATED: _("stated by a house rule"),
+        Origin.ASSUMED: _("assumed"),
+    }
+    held = {
+        None: "",
+        Anchorage.ANCHORED: _(", fastened"),
+        Anchorage.UNANCHORED: _(", not fastened"),
+    }[anchorage]
+    return f"{told[stands]} ({known[by]}){held}"
+
+
+def furniture_known(counts: Mapping[str, int]) -> str:
+    """Say in one line of how many objects it is known from where what they stand on; "" of none.
+
+    counts : by origin
+    """
+    told = {
+        Origin.MEASURED: _("%(count)s by their record"),
+        Origin.DERIVED: _("%(count)s by the case that their record names"),
+        Origin.STATED: _("%(count)s by a house rule"),
+        Origin.ASSUMED: _("%(count)s by what is usual for their class"),
+    }
+    return ", ".join(text % {"count": count(counts[of])} for of, text in told.items() if counts.get(of))
+
+
+def left_out(skipped: tuple[str, str]) -> str:
+    """Say which model was left out, and why."""
+    model, why = skipped
+    return f"{words(clean(model))}: {said(clean(why))}"
+
+
+def taken_words(taken: tuple[str, Sequence[tuple[str, float]]]) -> str:
+    """Return how sure the class of an object is, and which other one is possible.
+
+    taken : the class, and how likely each is
+    """
+    name, chances = taken
+    sure = dict(chances).get(name)
+    if sure is None:
+        return ""
+    told = _("taken for: {one} ({sure})").format(one=words(clean(name)), sure=f"{sure:.2f}")
+    others = [pair for pair in chances if pair[0] != name and pair[1] >= _POSSIBLE]
+    if not others:
+        return told
+    other = _("{one} is possible ({sure})").format(one=words(clean(others[0][0])), sure=f"{others[0][1]:.2f}")
+    return f"{told}; {other}"
