@@ -177,7 +177,7 @@ class Sayings:
             level=clean(f.level),
             state=finding_state(f),
             outcome=said(clean(f.outcome)),
-            sentence=clean(self._units.fill(self._certain(f, happening(f.sentence, self._units)), values, where)),
+            sentence=clean(self._units.fill(self._certain(f, self.told(self._happening, f.sentence)), values, where)),
             numbers=self._sums(f, utilisation),
             utilisation=utilisation,
             bar=bar(f.utilisation),
@@ -245,7 +245,10 @@ class Sayings:
         span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
         text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
         # As among the assumptions of the object, where the same text is named once.
-        return NumberView(text, self.origin(e.origin), self.assumed(e.note), sourced(clean(e.source)))
+        return NumberView(text, self.origin(e.origin), self.assumed(e.note), self.told(sourced, clean(e.source)))
+
+    def _happening(self, sentence: str) -> str:
+        return happening(sentence, self._units)
 
     def rejected(self, text: str) -> str:
         """Say which measure was passed over and why, in the language and the lengths of the reader."""
@@ -355,7 +358,7 @@ class Describer:
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
             rejected=tuple(self._sayings.rejected(text) for text in r.rejected),
-            source=sourced(clean(r.source)),
+            source=self._sayings.told(sourced, clean(r.source)),
         )
 
     def _ended(self, r: Recommendation, before: Mapping[str, Finding]) -> tuple[CheckView, ...]:
