@@ -156,9 +156,12 @@ class Sayings:
         """Return a number that a model was run with in words."""
         return self._numbers.had((name, estimate), lambda: self._number(name, estimate))
 
-    def told(self, say: Callable[[Any], str], of: Hashable) -> str:
-        """Return what a function says of something that many objects have alike."""
-        return self._told.had((say, of), lambda: say(of))
+    def told(self, say: Callable[[Any], str], about: Any, *alike: Hashable) -> str:
+        """Return what a function says about something, once for all objects that have it alike.
+
+        alike : what it looks at, where that is not the whole
+        """
+        return self._told.had((say, *(alike or (about,))), lambda: say(about))
 
     def origin(self, of: Origin) -> str:
         """Say in words where a number comes from."""
@@ -304,11 +307,11 @@ class Describer:
             value_class=clean(item.value_class),
             worth=worth_words(scene, worth) if worth.terms else "",
             object_class=told(class_words, clean(scene.object_class)),
-            taken=told(taken_words, (scene.object_class, scene.chances)),
+            taken=told(taken_words, scene, scene.object_class, scene.chances),
             rule=told(rule_words, clean(scene.rule)),
-            support=told(held, (scene.support, scene.mount)),
+            support=told(held, scene, scene.support, scene.mount),
             place=clean(item.case),
-            furniture=told(furniture, (scene.furniture, scene.stands_by, scene.anchorage)),
+            furniture=told(furniture, scene, scene.furniture, scene.stands_by, scene.anchorage),
             lead=findings[0] if findings else None,
             findings=findings,
             measures=self._measures(assessment),

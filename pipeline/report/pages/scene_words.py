@@ -1,8 +1,8 @@
 """What many objects have alike, in words: how they are held, what they stand in or on, what they are taken for."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from pipeline.records import Anchorage, Furniture, Mount, Origin, Support
+from pipeline.records import Anchorage, Furniture, Mount, Origin, Scene, Support
 from pipeline.report.language import _, said
 from pipeline.report.text import clean, count, words
 
@@ -22,11 +22,8 @@ def support(of: Support) -> str:
     return told[of]
 
 
-def held(by: tuple[Support, Mount | None]) -> str:
-    """Say in words how an object is held where it stands, lies or hangs.
-
-    by : how it is supported, and by what mount where it has one
-    """
+def held(scene: Scene) -> str:
+    """Say in words how an object is held where it stands, lies or hangs."""
     ways = {
         Mount.LYING: _("lies on its largest face"),
         Mount.STANDING: _("stands by itself"),
@@ -35,16 +32,12 @@ def held(by: tuple[Support, Mount | None]) -> str:
         Mount.SECURED: _("held on its mount"),
         Mount.UNKNOWN: _("on a mount that nobody described"),
     }
-    return support(by[0]) if by[1] is None else ways[by[1]]
+    return support(scene.support) if scene.mount is None else ways[scene.mount]
 
 
-def furniture(of: tuple[Furniture | None, Origin | None, Anchorage | None]) -> str:
-    """Say in words what an object stands in or on, and where that is known from; "" of what hangs as all such do.
-
-    of : what it is, where that is known from, and whether it is fastened
-    """
-    stands, by, anchorage = of
-    if stands is None or by is None:
+def furniture(scene: Scene) -> str:
+    """Say in words what an object stands in or on, and where that is known from; "" of what hangs as all such do."""
+    if scene.furniture is None or scene.stands_by is None:
         return ""
     told = {
         Furniture.FLOOR: _("on the floor"),
@@ -64,8 +57,8 @@ def furniture(of: tuple[Furniture | None, Origin | None, Anchorage | None]) -> s
         None: "",
         Anchorage.ANCHORED: _(", fastened"),
         Anchorage.UNANCHORED: _(", not fastened"),
-    }[anchorage]
-    return f"{told[stands]} ({known[by]}){held}"
+    }[scene.anchorage]
+    return f"{told[scene.furniture]} ({known[scene.stands_by]}){held}"
 
 
 def furniture_known(counts: Mapping[str, int]) -> str:
@@ -88,17 +81,13 @@ def left_out(skipped: tuple[str, str]) -> str:
     return f"{words(clean(model))}: {said(clean(why))}"
 
 
-def taken_words(taken: tuple[str, Sequence[tuple[str, float]]]) -> str:
-    """Return how sure the class of an object is, and which other one is possible.
-
-    taken : the class, and how likely each is
-    """
-    name, chances = taken
-    sure = dict(chances).get(name)
+def taken_words(scene: Scene) -> str:
+    """Return how sure the class of an object is, and which other one is possible."""
+    sure = dict(scene.chances).get(scene.object_class)
     if sure is None:
         return ""
-    told = _("taken for: {one} ({sure})").format(one=words(clean(name)), sure=f"{sure:.2f}")
-    others = [pair for pair in chances if pair[0] != name and pair[1] >= _POSSIBLE]
+    told = _("taken for: {one} ({sure})").format(one=words(clean(scene.object_class)), sure=f"{sure:.2f}")
+    others = [pair for pair in scene.chances if pair[0] != scene.object_class and pair[1] >= _POSSIBLE]
     if not others:
         return told
     other = _("{one} is possible ({sure})").format(one=words(clean(others[0][0])), sure=f"{others[0][1]:.2f}")
