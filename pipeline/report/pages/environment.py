@@ -74,14 +74,22 @@ class _Told(NodeTransformer):
         return node
 
 
+_DESK = "desk/"
+"""Folder of the desk's templates."""
+
+
 class _Plainer(CodeGenerator):
     """Compiles templates to what asks an object itself for its attributes, and makes no Markup of what is printed.
 
-    There are hundreds of both to an object of the museum.  A name that an object lacks is an AttributeError.
+    There are hundreds of both to an object of the museum.  A name that an object lacks is an AttributeError.  Pages of
+    the desk alone are given mappings besides objects.
     """
 
     def visit_Getattr(self, node: nodes.Getattr, frame: Frame) -> None:  # noqa: N802 - as jinja2 calls it
         """Write ``object.name``."""
+        if (self.name or "").startswith(_DESK):
+            super().visit_Getattr(node, frame)
+            return
         self.write("(")
         self.visit(node.node, frame)
         self.write(f").{node.attr}")
