@@ -134,7 +134,7 @@ def sound_rows(connection: Connection, table: Table, condition: ColumnElement[bo
         if not broken:
             raise
         rows = connection.execute(wanted.where(key.not_in(broken))).all()
-    return [row for row in rows if row._mapping[key] not in broken], broken
+    return [row for row in rows if row._mapping[key] not in broken] if broken else list(rows), broken
 
 
 def damaged_rows(connection: Connection, table: Table, condition: ColumnElement[bool] | None = None) -> Iterator[str]:

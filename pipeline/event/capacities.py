@@ -309,7 +309,7 @@ def _by_levels(found: Capacities, kind: int, at: int, said: Sequence[Likelihood]
         peaks = floor.levels[one.level]
         medians.append([peak - sd * float(ndtri(share)) for peak, sd in zip(peaks, spread, strict=True)])
     if medians:
-        ln_a, ln_v = np.mean(medians, axis=0).tolist()
+        ln_a, ln_v = (sum(column) / len(medians) for column in zip(*medians, strict=True))
         _put(found, kind, at, (ln_a, ln_v), spread, own, floor)
 
 

@@ -217,7 +217,9 @@ class Assessment:
     @property
     def likelihood(self) -> Likelihood | None:
         """How likely it comes to harm at the level that decides: where that is likeliest; None where nobody knows."""
-        return max(self.likelihoods, key=lambda one: one.probability, default=None)
+        told = self.likelihoods
+        # Asked twenty times of an object, which mostly has one.
+        return told[0] if len(told) == 1 else max(told, key=lambda one: one.probability, default=None)
 
     @property
     def assessed(self) -> bool:

@@ -5,6 +5,7 @@ See `pipeline.records.phrase`: a run stores both in English.
 
 import re
 from collections.abc import Mapping
+from functools import cache
 
 from pipeline.analysis.classify import object_classes
 from pipeline.quantities import LENGTHS
@@ -152,11 +153,17 @@ def class_words(row: str) -> str:
 
 
 def _clause(clause: str, units: Units) -> str:
-    for phrase in PHRASES:
+    for phrase in _beginning(clause[:1]):
         places = phrase.places(clause)
         if places is not None:
             return _told(phrase, places, units)
     return said(clause)
+
+
+@cache
+def _beginning(letter: str) -> tuple[Clause, ...]:
+    """Return the phrases that a clause may be of which begins with a letter, in their order."""
+    return tuple(one for one in PHRASES if one.asked[:1] in (letter, "{"))
 
 
 def _told(phrase: Clause, places: Mapping[str, str | Number], units: Units) -> str:

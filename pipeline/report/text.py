@@ -3,13 +3,20 @@
 import hashlib
 import re
 import unicodedata
+from collections.abc import Callable
 from functools import lru_cache
+
+import markupsafe
 
 from pipeline.report.language import _, local
 
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 _BIDI = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 _UNIT_SUFFIX = re.compile(r"_(m|kg|hz|pa|deg|s|g|rad)$")
+
+
+escaped: Callable[[str], str] = getattr(markupsafe, "_escape_inner", markupsafe.escape)
+"""Escapes a text for a page: what `markupsafe.escape` makes a Markup of, which takes three times as long."""
 
 
 def clean(text: str) -> str:

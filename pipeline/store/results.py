@@ -6,8 +6,10 @@ their order.  Neither numbers nor places of the objects are in it, so that objec
 
 import hashlib
 import zlib
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Engine, Table, delete, insert, select
@@ -157,13 +159,24 @@ def of_object(result: Result, item: Item) -> Assessment:
     )
     return Assessment(
         scene,
-        tuple(replace(one, object_number=number, gallery=gallery) for one in result.findings),
-        tuple(replace(one, object_number=number, gallery=gallery) for one in result.recommendations),
-        tuple(replace(one, object_number=number) for one in result.fragilities),
+        _owned(result.findings, number, gallery),
+        _owned(result.recommendations, number, gallery),
+        _owned(result.fragilities, number),
         result.fault,
         result.aside,
         result.likelihoods,
     )
+
+
+def _owned(found: Iterable[Any], *names: str) -> tuple[Any, ...]:
+    """Return records with the names of their object, which are their first fields: `replace` takes thrice as long."""
+    return tuple(one.__class__(*names, *_rest(one.__class__, len(names))(one)) for one in found)
+
+
+@cache
+def _rest(record: Any, names: int) -> Callable[[Any], tuple[Any, ...]]:
+    """Return what gives the fields of a record behind the first ones."""
+    return attrgetter(*(one.name for one in fields(record)[names:]))
 
 
 def encode(key: str, results: Sequence[Result]) -> Stored:

@@ -10,8 +10,8 @@ from pipeline.analysis.classify import classify
 from pipeline.quantities import G
 from pipeline.records import Fragility, Furniture, Item, Spacing, Verdict
 from pipeline.report.assumed import rule_words
-from pipeline.report.pages.describe import furniture
 from pipeline.report.pages.judging import fragility_views, shaking_view, spacing_views, years
+from pipeline.report.pages.scene_words import furniture
 from pipeline.report.units import Units
 
 from . import builder

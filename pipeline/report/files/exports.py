@@ -1,7 +1,6 @@
 """The findings, recommendations and objects of a run as files that other programs read.  SI throughout."""
 
 import csv
-import io
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -295,20 +294,27 @@ def _line(row: Mapping[str, Any]) -> str:
     return json.dumps({name: _json(row[name]) for name in _OF_PARTS["objects"]}, allow_nan=False) + "\n"
 
 
+class _Line:
+    """Takes a line of CSV in place of a file, and gives it back."""
+
+    def write(self, line: str) -> str:
+        return line
+
+
 def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
-    stream = io.StringIO(newline="")
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerows([_cell(row[name]) for name in columns] for row in rows)
-    return stream.getvalue()
+    writer: Any = csv.writer(_Line(), lineterminator="\n")
+    return "".join([writer.writerow([_cell(row[name]) for name in columns]) for row in rows])
 
 
 def _cell(value: object) -> str:
-    # Most are texts; there are forty to an object.
+    # There are a hundred to an object, most of them nothing, numbers and texts.
+    if value is None:
+        return ""
+    if type(value) is float:
+        return "" if isnan(value) else repr(value)
     if isinstance(value, str):
         return safe_cell(str(value))
     match value:
-        case None:
-            return ""
         case bool():
             return "true" if value else "false"
         case float() | int():
@@ -340,17 +346,17 @@ def _parquet(name: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
     import pyarrow.parquet as pq
 
     schema = pa.schema([schema_of(name).field(column) for column in _OF_PARTS[name]])
-    columns = [pa.array(_writable([row[field.name] for row in rows], field.type), field.type) for field in schema]
+    columns = [_column([row[field.name] for row in rows], field.type) for field in schema]
     sink = pa.BufferOutputStream()
     pq.write_table(pa.Table.from_arrays(columns, schema=schema), sink, compression="zstd")
     return bytes(sink.getvalue().to_pybytes())
 
 
-def _writable(values: list[Any], kind: Any) -> list[Any]:
+def _column(values: list[Any], kind: Any) -> Any:
     import pyarrow as pa
 
-    if kind == pa.string():
-        return [value if value is None or value.isascii() else encodable(value) for value in values]
-    if pa.types.is_list(kind):
-        return [[encodable(text) for text in value] for value in values]
-    return values
+    try:
+        return pa.array(values, kind)
+    except UnicodeEncodeError:
+        fit = [[encodable(text) for text in one] if isinstance(one, list) else one and encodable(one) for one in values]
+        return pa.array(fit, kind)

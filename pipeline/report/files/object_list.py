@@ -116,9 +116,11 @@ def listed_pages(parts: Sequence[Path], shown: int = SHOWN) -> tuple[list[ListPa
 
     tables = [_schema().empty_table()]
     for part in parts:
-        with pa.OSFile(str(part)) as source, pa.ipc.open_file(source) as file:
+        with pa.memory_map(str(part)) as source, pa.ipc.open_file(source) as file:
             tables.append(file.read_all())
-    every = pa.concat_tables(tables)
+    # In one piece: what lies in many is put together anew for every page that is taken from it.
+    every = pa.concat_tables(tables).combine_chunks()
+    tables.clear()
     order = pc.sort_indices(every, sort_keys=[("key", "ascending"), ("number", "ascending")])
     pages = [order.slice(begin, shown) for begin in range(0, max(1, len(order)), shown)]
     ends = [

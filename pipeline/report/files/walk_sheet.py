@@ -237,8 +237,11 @@ class _Sheet:
         def fits(piece: str) -> bool:
             return width_of(piece, font, _SIZE) <= width
 
+        whole = self._fit(plain(text)[:letters]).strip()
+        if fits(whole):
+            return (whole,) if whole else ()
         lines, line = [], ""
-        for word in _SPACES.split(self._fit(plain(text)[:letters]).strip()):
+        for word in _SPACES.split(whole):
             joined = f"{line} {word}" if line else word
             if fits(joined):
                 line = joined

@@ -12,7 +12,7 @@ from pipeline.report.errors import ReportError
 from pipeline.report.language import _, local, ngettext, said
 from pipeline.report.pages.class_curves import class_curve_views, class_curves
 from pipeline.report.pages.decided import Decided, decisions_view, merged
-from pipeline.report.pages.describe import Describer, Sayings, furniture_known
+from pipeline.report.pages.describe import Describer, Sayings
 from pipeline.report.pages.floor_plan import plan_view
 from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
@@ -21,6 +21,7 @@ from pipeline.report.pages.numerics import decided_views, fidelities
 from pipeline.report.pages.photo_views import credits_of, photo_view
 from pipeline.report.pages.ranking import urgency
 from pipeline.report.pages.reading import reading_view
+from pipeline.report.pages.scene_words import furniture_known
 from pipeline.report.pages.selftest import self_test_view
 from pipeline.report.pages.survey_words import SURVEY_SECONDS, errands, survey_sentence
 from pipeline.report.pages.views import (

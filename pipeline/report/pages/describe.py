@@ -1,29 +1,25 @@
 """One object in words and in the reader's units."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from math import isfinite, isnan
+from typing import Any
 
 from pipeline.analysis.stakes import worth_of
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.records import (
-    Anchorage,
     Assessment,
     Check,
     Estimate,
     Finding,
-    Furniture,
     Mark,
     MeasurementRequest,
     MotionSummary,
-    Mount,
     Origin,
     Recommendation,
     RunRecord,
-    Scene,
-    Support,
     Urgency,
     Verdict,
 )
@@ -38,6 +34,7 @@ from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
 from pipeline.report.pages.plainly import brief_measure, dangers, full_measure, plain_measure
 from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of, urgency
+from pipeline.report.pages.scene_words import furniture, held, left_out, taken_words
 from pipeline.report.pages.survey_words import missing_words, wish_views
 from pipeline.report.pages.views import (
     Bar,
@@ -52,11 +49,9 @@ from pipeline.report.pages.views import (
     State,
 )
 from pipeline.report.plots.chart import Spot
-from pipeline.report.text import clean, count, digest, plain, short, words
+from pipeline.report.text import clean, digest, plain, short, words
 from pipeline.report.units import Units, ratio
 
-_POSSIBLE = 0.05
-"""Probability from which another class is named on the page of an object."""
 _PLACEHOLDER = re.compile(r"{(\w+)}")
 _RANGE = re.compile(r" \([^()]*{(?:low|high)}[^()]*\)")
 """Brackets of a sentence that tell the range of a demand."""
@@ -111,71 +106,6 @@ def origin(of: Origin) -> str:
     return told[of]
 
 
-def support(of: Support) -> str:
-    """Say in words how an object is held."""
-    told = {
-        Support.FREESTANDING: _("freestanding"),
-        Support.FASTENED: _("fastened"),
-        Support.HUNG: _("hung"),
-        Support.SUSPENDED: _("suspended"),
-        Support.ISOLATED: _("isolated"),
-    }
-    return told[of]
-
-
-def held(scene: Scene) -> str:
-    """Say in words how an object is held where it stands, lies or hangs."""
-    ways = {
-        Mount.LYING: _("lies on its largest face"),
-        Mount.STANDING: _("stands by itself"),
-        Mount.LEANING: _("leans on a stand or against a backing"),
-        Mount.RESTING: _("rests on its mount, held by nothing else"),
-        Mount.SECURED: _("held on its mount"),
-        Mount.UNKNOWN: _("on a mount that nobody described"),
-    }
-    return support(scene.support) if scene.mount is None else ways[scene.mount]
-
-
-def furniture(scene: Scene) -> str:
-    """Say in words what an object stands in or on, and where that is known from; "" of what hangs as all such do."""
-    if scene.furniture is None or scene.stands_by is None:
-        return ""
-    told = {
-        Furniture.FLOOR: _("on the floor"),
-        Furniture.SHOWCASE: _("in a showcase"),
-        Furniture.PEDESTAL: _("on a pedestal or plinth"),
-        Furniture.SHELF: _("on a shelf"),
-        Furniture.WALL: _("on a wall"),
-        Furniture.RAIL: _("from a rail or the ceiling"),
-    }
-    known = {
-        Origin.MEASURED: _("as recorded"),
-        Origin.DERIVED: _("as its record names a case"),
-        Origin.STATED: _("stated by a house rule"),
-        Origin.ASSUMED: _("assumed"),
-    }
-    held = {
-        None: "",
-        Anchorage.ANCHORED: _(", fastened"),
-        Anchorage.UNANCHORED: _(", not fastened"),
-    }[scene.anchorage]
-    return f"{told[scene.furniture]} ({known[scene.stands_by]}){held}"
-
-
-def furniture_known(counts: Mapping[str, int]) -> str:
-    """Say in one line of how many objects it is known from where what they stand on; "" of none.
-
-    counts : by origin
-    """
-    told = {
-        Origin.MEASURED: _("%(count)s by their record"),
-        Origin.DERIVED: _("%(count)s by the case that their record names"),
-        Origin.STATED: _("%(count)s by a house rule"),
-        Origin.ASSUMED: _("%(count)s by what is usual for their class"),
-    }
-    return ", ".join(text % {"count": count(counts[of])} for of, text in told.items() if counts.get(of))
-
-
 def bar(utilisation: float | None) -> Bar | None:
     """Return the bar of a utilisation: its track spans 0 to 2, and the limit, 1, lies in the middle."""
     if utilisation is None or isnan(utilisation):
@@ -213,6 +143,7 @@ class Sayings:
         self._origins: Memory[str] = Memory()
         self._assumed: Memory[str] = Memory()
         self._rejected: Memory[str] = Memory()
+        self._told: Memory[str] = Memory()
 
     def finding(self, f: Finding) -> FindingView:
         """Return a finding in words.
@@ -224,6 +155,13 @@ class Sayings:
     def number(self, name: str, estimate: Estimate) -> NumberView:
         """Return a number that a model was run with in words."""
         return self._numbers.had((name, estimate), lambda: self._number(name, estimate))
+
+    def told(self, say: Callable[[Any], str], about: Any, *alike: Hashable) -> str:
+        """Return what a function says about something, once for all objects that have it alike.
+
+        alike : what it looks at, where that is not the whole
+        """
+        return self._told.had((say, *(alike or (about,))), lambda: say(about))
 
     def origin(self, of: Origin) -> str:
         """Say in words where a number comes from."""
@@ -242,7 +180,7 @@ class Sayings:
             level=clean(f.level),
             state=finding_state(f),
             outcome=said(clean(f.outcome)),
-            sentence=clean(self._units.fill(self._certain(f, happening(f.sentence, self._units)), values, where)),
+            sentence=clean(self._units.fill(self._certain(f, self.told(self._happening, f.sentence)), values, where)),
             numbers=self._sums(f, utilisation),
             utilisation=utilisation,
             bar=bar(f.utilisation),
@@ -310,7 +248,10 @@ class Sayings:
         span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
         text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
         # As among the assumptions of the object, where the same text is named once.
-        return NumberView(text, self.origin(e.origin), self.assumed(e.note), sourced(clean(e.source)))
+        return NumberView(text, self.origin(e.origin), self.assumed(e.note), self.told(sourced, clean(e.source)))
+
+    def _happening(self, sentence: str) -> str:
+        return happening(sentence, self._units)
 
     def rejected(self, text: str) -> str:
         """Say which measure was passed over and why, in the language and the lengths of the reader."""
@@ -319,19 +260,6 @@ class Sayings:
     def assumed(self, text: str) -> str:
         """Say what was assumed, in the language and the lengths of the reader."""
         return self._assumed.had(text, lambda: assumed(clean(text), self._units))
-
-
-def taken_words(scene: Scene) -> str:
-    """Return how sure the class of an object is, and which other one is possible."""
-    sure = dict(scene.chances).get(scene.object_class)
-    if sure is None:
-        return ""
-    told = _("taken for: {one} ({sure})").format(one=words(clean(scene.object_class)), sure=f"{sure:.2f}")
-    others = [pair for pair in scene.chances if pair[0] != scene.object_class and pair[1] >= _POSSIBLE]
-    if not others:
-        return told
-    other = _("{one} is possible ({sure})").format(one=words(clean(others[0][0])), sure=f"{others[0][1]:.2f}")
-    return f"{told}; {other}"
 
 
 class Describer:
@@ -367,7 +295,7 @@ class Describer:
         named = [*scene.assumptions, *(text for f in assessment.findings for text in f.assumptions)]
         estimates = sorted(scene.parameters.items(), key=lambda pair: (_ORIGIN_ORDER[pair[1].origin], pair[0]))
         title = clean(item.called)
-        worth, chance = worth_of(scene), chance_view(assessment)
+        worth, chance, told = worth_of(scene), chance_view(assessment), self._sayings.told
         return ObjectView(
             number=clean(item.object_number),
             title=title,
@@ -378,20 +306,20 @@ class Describer:
             state=state,
             value_class=clean(item.value_class),
             worth=worth_words(scene, worth) if worth.terms else "",
-            object_class=class_words(clean(scene.object_class)),
-            taken=taken_words(scene),
-            rule=rule_words(clean(scene.rule)),
-            support=held(scene),
+            object_class=told(class_words, clean(scene.object_class)),
+            taken=told(taken_words, scene, scene.object_class, scene.chances),
+            rule=told(rule_words, clean(scene.rule)),
+            support=told(held, scene, scene.support, scene.mount),
             place=clean(item.case),
-            furniture=furniture(scene),
+            furniture=told(furniture, scene, scene.furniture, scene.stands_by, scene.anchorage),
             lead=findings[0] if findings else None,
             findings=findings,
             measures=self._measures(assessment),
             figures=self._figures(ordered, assessment.recommendations) if state is State.ACT and fails else (),
             numbers=tuple(self._sayings.number(name, estimate) for name, estimate in estimates),
-            assumptions=tuple(dict.fromkeys(self._sayings.assumed(text) for text in named)),
+            assumptions=tuple(dict.fromkeys(map(self._sayings.assumed, dict.fromkeys(named)))),
             statements=tuple(said(clean(text)) for text in scene.statements),
-            missing=tuple(missing_words(clean(m)) for m in scene.missing),
+            missing=tuple(told(missing_words, clean(m)) for m in scene.missing),
             problems=tuple(
                 (words(clean(p.field)), self._sayings.assumed(p.message), self._sayings.assumed(p.remedy))
                 for p in item.problems
@@ -401,7 +329,7 @@ class Describer:
             chance=chance,
             open_for=open_for(assessment),
             fragilities=fragility_views(assessment, drawn=state is State.ACT and fails),
-            skipped=tuple(f"{words(clean(model))}: {said(clean(why))}" for model, why in scene.skipped.items()),
+            skipped=tuple(told(left_out, one) for one in scene.skipped.items()),
             decisions=self.decided.of(assessment),
             settled=self.decided.covered(assessment),
             dangers=dangers(ordered),
@@ -433,7 +361,7 @@ class Describer:
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
             rejected=tuple(self._sayings.rejected(text) for text in r.rejected),
-            source=sourced(clean(r.source)),
+            source=self._sayings.told(sourced, clean(r.source)),
         )
 
     def _ended(self, r: Recommendation, before: Mapping[str, Finding]) -> tuple[CheckView, ...]:

@@ -9,13 +9,32 @@ from typing import Any
 
 from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined, nodes
 from jinja2.bccache import Bucket
+from jinja2.compiler import CodeGenerator, Frame
 from jinja2.visitor import NodeTransformer
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from pipeline.report.errors import ReportError
 from pipeline.report.language import Language, moment
-from pipeline.report.text import clean, count, plain
+from pipeline.report.text import clean, count, escaped, plain
 from pipeline.resources import resource
+
+
+def _shown(value: object) -> str:
+    """Return what a template prints, escaped once.
+
+    Raises
+    ------
+    ReportError
+        For None.
+    """
+    kind = type(value)
+    if kind is str:
+        return escaped(value)  # type: ignore[arg-type]
+    if kind is Markup:
+        return value  # type: ignore[return-value]
+    if value is None:
+        raise ReportError("a template prints None; give the view a text for what is not known")
+    return escape(value)
 
 
 class _Compiled(BytecodeCache):
@@ -55,9 +74,50 @@ class _Told(NodeTransformer):
         return node
 
 
+_DESK = "desk/"
+"""Folder of the desk's templates."""
+
+
+class _Plainer(CodeGenerator):
+    """Compiles templates to what asks an object itself for its attributes, and makes no Markup of what is printed.
+
+    There are hundreds of both to an object of the museum.  A name that an object lacks is an AttributeError.  Pages of
+    the desk alone are given mappings besides objects.
+    """
+
+    def visit_Getattr(self, node: nodes.Getattr, frame: Frame) -> None:  # noqa: N802 - as jinja2 calls it
+        """Write ``object.name``."""
+        if (self.name or "").startswith(_DESK):
+            super().visit_Getattr(node, frame)
+            return
+        self.write("(")
+        self.visit(node.node, frame)
+        self.write(f").{node.attr}")
+
+    def visit_Call(self, node: nodes.Call, frame: Frame, forward_caller: bool = False) -> None:  # noqa: N802
+        """Write ``macros.name(...)``: what is had by its name of something wants no context."""
+        if forward_caller or node.dyn_args or node.dyn_kwargs or not isinstance(node.node, nodes.Getattr):
+            super().visit_Call(node, frame, forward_caller=forward_caller)
+            return
+        self.visit(node.node, frame)
+        self.write("(")
+        for one in (*node.args, *node.kwargs):
+            self.visit(one, frame)
+            self.write(", ")
+        self.write(")")
+
+    def _output_child_pre(self, *_: Any) -> None:
+        self.write("environment.shown(")
+
+    def _output_child_post(self, *_: Any) -> None:
+        self.write(")")
+
+
 class _Spoken(Environment):
     """An environment whose templates are compiled with the phrases of a language."""
 
+    code_generator_class = _Plainer
+    shown = staticmethod(_shown)
     spoken = Language()
 
     def _parse(self, source: str, name: str | None, filename: str | None) -> nodes.Template:
@@ -82,7 +142,6 @@ def environment(language: Language | None = None) -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         extensions=["jinja2.ext.i18n"],
-        finalize=_present,
     )
     env.spoken = spoken
     env.install_gettext_translations(phrases, newstyle=True)  # type: ignore[attr-defined]
@@ -109,14 +168,7 @@ def fragments(env: Environment, template: str) -> Callable[..., Markup]:
 
 def _squeezed(text: Markup) -> Markup:
     """Return a piece of a page on one line."""
-    return Markup(" ").join(map(Markup, text.split()))
-
-
-def _present(value: object) -> object:
-    """Refuse to print None."""
-    if value is None:
-        raise ReportError("a template prints None; give the view a text for what is not known")
-    return value
+    return Markup(" ".join(str.split(text)))  # noqa: S704 - of what is a Markup already
 
 
 @cache

@@ -4,11 +4,13 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from operator import attrgetter
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from pipeline.report.language import _, parted
 from pipeline.report.pages.views import NumberView, ObjectView
+from pipeline.report.text import escaped
 
 _HEAD = 48
 """The longest beginning of a note (up to its colon) that is repeated in front of its number."""
@@ -45,7 +47,7 @@ class Notes:
         self._headed = headed
         self._places = {note.text: at for at, note in enumerate(self.listed)}
         self._tags = {
-            (n.text, cited): Markup(f" {escape(n.label) if cited else _link(n.label, n.label)}")  # noqa: S704
+            (n.text, cited): f" {escaped(n.label) if cited else _link(n.label, n.label)}"
             for n in self.listed
             for cited in (False, True)
         }
@@ -58,8 +60,8 @@ class Notes:
         """
         key = tuple(texts)
         if key not in self._cited:
-            parts = [self._run(run) for run in self._runs(key)]
-            self._cited[key] = escape(_("; ")).join(parts)
+            parts = map(self._run, self._runs(key))
+            self._cited[key] = Markup(escaped(_("; ")).join(parts))  # noqa: S704 - all parts are escaped
         return self._cited[key]
 
     def _runs(self, texts: Sequence[str]) -> list[list[str]]:
@@ -74,23 +76,24 @@ class Notes:
                 runs.append([text])
         return runs
 
-    def _run(self, texts: Sequence[str]) -> Markup:
+    def _run(self, texts: Sequence[str]) -> str:
         if texts[0] not in self._places:
-            return escape(texts[0])
+            return escaped(texts[0])
         first, last = (self.listed[self._places[text]].label for text in (texts[0], texts[-1]))
         heads = parted(filter(None, map(_head, texts))) if self._headed else ""
         labels = first if first == last else _("%(first)s to %(last)s") % {"first": first, "last": last}
         return _link(first, f"{heads} {labels}".strip())
 
-    def tag(self, text: str, source: str, *, cited: bool = False) -> Markup:
+    def tag(self, text: str, source: str, *, cited: bool = False) -> str:
         """Return " A5" for a text that is listed, as a link where none stands beside, or it and its source in brackets.
 
+        Escaped already.
         cited : whether a link to it stands beside
         """
         if text in self._places:
             return self._tags[text, cited]
-        told = parted(part for part in (text, source) if part)
-        return escape(f" ({told})") if told else Markup()
+        told = parted((text, source)) if text and source else text or source
+        return escaped(f" ({told})") if told else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,14 +114,13 @@ class PageNotes:
 
         cited : the notes to which links stand beside
         """
-        groups = (
-            escape(f"{origin[:1].upper()}{origin[1:]}: ")
-            + escape(_("; ")).join(
-                escape(n.text) + self.assumed.tag(n.note, n.source, cited=n.note in cited) for n in members
-            )
-            for origin, members in groupby(numbers, key=lambda n: n.origin)
-        )
-        return Markup(". ").join(groups) + "." if numbers else Markup()
+        between, tag = escaped(_("; ")), self.assumed.tag
+        groups = [
+            escaped(f"{origin[:1].upper()}{origin[1:]}: ")
+            + between.join([escaped(n.text) + tag(n.note, n.source, cited=n.note in cited) for n in members])
+            for origin, members in groupby(numbers, key=_origin)
+        ]
+        return Markup(". ".join(groups) + "." if groups else "")  # noqa: S704 - all parts are escaped
 
     def left_out(self, view: ObjectView) -> Markup:
         """Return the models that were not run for an object in one line, with the reasons or links to them."""
@@ -160,10 +162,13 @@ def _left_out(view: ObjectView, alone: Collection[str]) -> list[str]:
     return [*own, others] if others else own
 
 
+_origin = attrgetter("origin")
+
+
 def _head(text: str) -> str:
     head, colon, _rest = text.partition(":")
     return head if colon and len(head) <= _HEAD else ""
 
 
-def _link(label: str, shown: str) -> Markup:
-    return Markup(f'<a href="#{escape(label)}">{escape(shown)}</a>')  # noqa: S704 - both parts are escaped
+def _link(label: str, shown: str) -> str:
+    return f'<a href="#{escaped(label)}">{escaped(shown)}</a>'

@@ -1,0 +1,94 @@
+"""What many objects have alike, in words: how they are held, what they stand in or on, what they are taken for."""
+
+from collections.abc import Mapping
+
+from pipeline.records import Anchorage, Furniture, Mount, Origin, Scene, Support
+from pipeline.report.language import _, said
+from pipeline.report.text import clean, count, words
+
+_POSSIBLE = 0.05
+"""Probability from which another class is named on the page of an object."""
+
+
+def support(of: Support) -> str:
+    """Say in words how an object is held."""
+    told = {
+        Support.FREESTANDING: _("freestanding"),
+        Support.FASTENED: _("fastened"),
+        Support.HUNG: _("hung"),
+        Support.SUSPENDED: _("suspended"),
+        Support.ISOLATED: _("isolated"),
+    }
+    return told[of]
+
+
+def held(scene: Scene) -> str:
+    """Say in words how an object is held where it stands, lies or hangs."""
+    ways = {
+        Mount.LYING: _("lies on its largest face"),
+        Mount.STANDING: _("stands by itself"),
+        Mount.LEANING: _("leans on a stand or against a backing"),
+        Mount.RESTING: _("rests on its mount, held by nothing else"),
+        Mount.SECURED: _("held on its mount"),
+        Mount.UNKNOWN: _("on a mount that nobody described"),
+    }
+    return support(scene.support) if scene.mount is None else ways[scene.mount]
+
+
+def furniture(scene: Scene) -> str:
+    """Say in words what an object stands in or on, and where that is known from; "" of what hangs as all such do."""
+    if scene.furniture is None or scene.stands_by is None:
+        return ""
+    told = {
+        Furniture.FLOOR: _("on the floor"),
+        Furniture.SHOWCASE: _("in a showcase"),
+        Furniture.PEDESTAL: _("on a pedestal or plinth"),
+        Furniture.SHELF: _("on a shelf"),
+        Furniture.WALL: _("on a wall"),
+        Furniture.RAIL: _("from a rail or the ceiling"),
+    }
+    known = {
+        Origin.MEASURED: _("as recorded"),
+        Origin.DERIVED: _("as its record names a case"),
+        Origin.STATED: _("stated by a house rule"),
+        Origin.ASSUMED: _("assumed"),
+    }
+    held = {
+        None: "",
+        Anchorage.ANCHORED: _(", fastened"),
+        Anchorage.UNANCHORED: _(", not fastened"),
+    }[scene.anchorage]
+    return f"{told[scene.furniture]} ({known[scene.stands_by]}){held}"
+
+
+def furniture_known(counts: Mapping[str, int]) -> str:
+    """Say in one line of how many objects it is known from where what they stand on; "" of none.
+
+    counts : by origin
+    """
+    told = {
+        Origin.MEASURED: _("%(count)s by their record"),
+        Origin.DERIVED: _("%(count)s by the case that their record names"),
+        Origin.STATED: _("%(count)s by a house rule"),
+        Origin.ASSUMED: _("%(count)s by what is usual for their class"),
+    }
+    return ", ".join(text % {"count": count(counts[of])} for of, text in told.items() if counts.get(of))
+
+
+def left_out(skipped: tuple[str, str]) -> str:
+    """Say which model was left out, and why."""
+    model, why = skipped
+    return f"{words(clean(model))}: {said(clean(why))}"
+
+
+def taken_words(scene: Scene) -> str:
+    """Return how sure the class of an object is, and which other one is possible."""
+    sure = dict(scene.chances).get(scene.object_class)
+    if sure is None:
+        return ""
+    told = _("taken for: {one} ({sure})").format(one=words(clean(scene.object_class)), sure=f"{sure:.2f}")
+    others = [pair for pair in scene.chances if pair[0] != scene.object_class and pair[1] >= _POSSIBLE]
+    if not others:
+        return told
+    other = _("{one} is possible ({sure})").format(one=words(clean(others[0][0])), sure=f"{others[0][1]:.2f}")
+    return f"{told}; {other}"
