@@ -17,6 +17,7 @@ from pipeline.records import (
     Origin,
     Scene,
     Support,
+    SurfaceMaterial,
 )
 from pipeline.records import phrases as say
 
