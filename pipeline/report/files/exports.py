@@ -294,7 +294,7 @@ def _line(row: Mapping[str, Any]) -> str:
     return json.dumps({name: _json(row[name]) for name in _OF_PARTS["objects"]}, allow_nan=False) + "\n"
 
 
-class _Line:
+class _CsvLine:
     """Takes a line of CSV in place of a file, and gives it back."""
 
     def write(self, line: str) -> str:
@@ -302,7 +302,7 @@ class _Line:
 
 
 def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
-    writer: Any = csv.writer(_Line(), lineterminator="\n")
+    writer: Any = csv.writer(_CsvLine(), lineterminator="\n")
     return "".join([writer.writerow([_cell(row[name]) for name in columns]) for row in rows])
 
 
