@@ -28,7 +28,7 @@ CARNEGIE = load_mapping("carnegie")
 KEY = SourceKey("export.csv", "mapping", "code", "limits")
 Table = list[list[str]]
 SEEDS = int(os.environ.get("KOUROS_SEEDS", "3"))
-"""Histories of ten nights each; `make soak` makes eight."""
+"""Histories of ten nights each; `make soak` makes 24."""
 
 
 class Export:
