@@ -1,4 +1,4 @@
-"""Makes what both workers of `make test` would else make at once: bytecode of the tests, and every compiled kernel.
+"""Makes what both workers of `make test` would else make at once: bytecode of the tests, and the compiled kernels.
 
 It runs beside the check of types, while the other core has nothing to do; where both are there it takes seconds.
 """
@@ -7,10 +7,14 @@ import sys
 
 import pytest
 
+from pipeline.cli.console import Console
+from pipeline.verification.extremes import shaking
 from pipeline.verification.self_measurement import CASES
+from pipeline.verification.tradeoff import measure
 
 if __name__ == "__main__":
-    # The cases of the self-test run every model, in all of its directions, coarse and fine.
+    # Every model, in all of its directions, coarse and fine; then its charts, bounds and turned motions.
     for case in CASES:
         case.measure()
-    sys.exit(pytest.main(["--collect-only", "--quiet", "--quiet", "--quiet"]))
+    measure([shaking()], [], Console(quiet=True), objects=2)
+    sys.exit(pytest.main(["--collect-only", "--quiet", "--quiet"]))
