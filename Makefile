@@ -65,7 +65,7 @@ soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for
 	KOUROS_SEQUENCES=200 $(BIN)/python -m pytest --numprocesses 2 tests/night/test_incremental.py
 	KOUROS_GRID=1 $(BIN)/python -m pytest tests/models/test_bounded_work.py
 	KOUROS_ROWS=40 $(BIN)/python -m pytest --numprocesses 2 tests/models/test_error_estimate.py
-	KOUROS_DRAWS=640 $(BIN)/python -m pytest tests/analysis/test_likelihood.py -k plain_monte_carlo
+	KOUROS_DRAWS=160 $(BIN)/python -m pytest tests/analysis/test_likelihood.py -k plain_monte_carlo
 	KOUROS_SEEDS=24 $(BIN)/python -m pytest tests/collection/test_known_rows.py tests/report/test_damaged_reports.py
 	KOUROS_HOSTILE=1000 $(BIN)/python -m pytest tests/security/test_hostile_collection.py
 

@@ -7,14 +7,16 @@ import sys
 
 import pytest
 
+from pipeline.analysis.response import respond
 from pipeline.cli.console import Console
+from pipeline.models import MODELS
 from pipeline.verification.extremes import shaking
-from pipeline.verification.self_measurement import CASES
 from pipeline.verification.tradeoff import measure
 
 if __name__ == "__main__":
-    # Every model, in all of its directions, coarse and fine; then its charts, bounds and turned motions.
-    for case in CASES:
-        case.measure()
+    # Every model at every step, with its charts, bounds and turned motions; then those that run along a line too.
     measure([shaking()], [], Console(quiet=True), objects=2)
+    for model in MODELS:
+        if model.directions == 0:
+            respond(model.name, shaking(), directions=1, **model.trials.sample)
     sys.exit(pytest.main(["--collect-only", "--quiet", "--quiet"]))
