@@ -4,7 +4,7 @@ BIN := .venv/bin
 STAMP := .venv/.kouros-installed
 PEERS := .venv/.kouros-peers
 
-.PHONY: demo test lint rules types docs catalogues bench soak audit airflow check-browser clean
+.PHONY: demo test lint rules types ready docs catalogues bench soak audit airflow check-browser clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || { echo "python3 has no venv module: apt-get install python3-venv"; exit 1; }
@@ -23,7 +23,8 @@ $(PEERS): $(STAMP)
 demo: $(STAMP)  ## the whole job on the bundled collection and record; ends with the path of the report
 	$(BIN)/kouros demo
 
-test: $(STAMP) lint check-browser  ## lint, types, floors and all tests
+test: $(STAMP) check-browser  ## lint, types, floors and all tests
+	@$(MAKE) --no-print-directory --jobs 2 types rules ready
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 # Types are checked on one core while rules and floors are on the other.
@@ -39,6 +40,10 @@ rules: $(STAMP)
 types: $(STAMP)
 	$(BIN)/mypy
 
+# While types are checked the other core makes what both workers of the tests would else make at once.
+ready: $(STAMP)
+	@PYTHONDONTWRITEBYTECODE= $(BIN)/python -m tests.ready >/dev/null
+
 # Offline; a broken link, a page that no table of contents names and an unreadable docstring are errors.
 docs: $(STAMP)  ## the documentation, in build/docs
 	$(BIN)/python -m docs.rooms
@@ -51,7 +56,7 @@ catalogues: $(STAMP)  ## the languages that travel with Kouros get new phrases, 
 bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks
 
-soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed, two hundred museums changed eight times
+soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed, two hundred museums changed eight times, every seed and every row that means harm
 	KOUROS_FUZZ_SECONDS=120 $(BIN)/python -m pytest --numprocesses 2 tests/motions/formats/test_fuzz.py -k damage
 	KOUROS_KILLS=50 $(BIN)/python -m pytest --numprocesses 2 tests/operations/test_interruptions.py -k kill
 	KOUROS_DAMAGES=1000 $(BIN)/python -m pytest tests/operations/test_damage.py
@@ -59,6 +64,10 @@ soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for
 	KOUROS_OBJECTS=8 $(BIN)/python -m pytest tests/night/test_faults.py
 	KOUROS_SEQUENCES=200 $(BIN)/python -m pytest --numprocesses 2 tests/night/test_incremental.py
 	KOUROS_GRID=1 $(BIN)/python -m pytest tests/models/test_bounded_work.py
+	KOUROS_ROWS=40 $(BIN)/python -m pytest --numprocesses 2 tests/models/test_error_estimate.py
+	KOUROS_DRAWS=160 $(BIN)/python -m pytest tests/analysis/test_likelihood.py -k plain_monte_carlo
+	KOUROS_SEEDS=24 $(BIN)/python -m pytest tests/collection/test_known_rows.py tests/report/test_damaged_reports.py
+	KOUROS_HOSTILE=1000 $(BIN)/python -m pytest tests/security/test_hostile_collection.py
 
 # In environments of their own: what audits and what schedules must not decide which versions Kouros is tested with.
 audit:  ## known vulnerabilities of the pinned versions; needs the network, and says so and fails where it has none

@@ -136,14 +136,24 @@ def demo_folder() -> Path:
             folder.mkdir(exist_ok=True)
             in_common(folder)
             with_tables(folder / DATABASE)
-            _take_over(Path(__file__).parents[1] / "kouros-demo" / DATABASE, folder / DATABASE)
+            _take_over(Path(__file__).parents[1] / "kouros-demo", folder)
             demo(folder, Console(quiet=True))
     return folder
 
 
-def _take_over(made: Path, database: Path) -> None:
+def _take_over(demonstration: Path, folder: Path) -> None:
     """Give a demonstration what that of `make demo` found, if the same code made it: no other has the same keys."""
+    from pipeline.resources import replacing
+    from pipeline.settings import KEPT
+    from tests.museum import DATABASE, OF_MOTIONS
+
+    made, database = demonstration / DATABASE, folder / DATABASE
     if made.exists():
+        for kind in OF_MOTIONS:
+            for file in (demonstration / KEPT / kind).glob("*.kept"):
+                if not (there := folder / KEPT / kind / file.name).exists():
+                    with replacing(there) as aside:
+                        aside.write_bytes(file.read_bytes())
         with (
             closing(sqlite3.connect(f"file:{quote(str(database))}", uri=True)) as connection,
             suppress(sqlite3.DatabaseError),

@@ -1,6 +1,7 @@
 """Probabilities of harm: against closed forms, against another sampler, and what may not change them."""
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -145,7 +146,7 @@ def test_fifty_objects_agree_with_plain_monte_carlo() -> None:
     ]
     chosen = upright[:: len(upright) // 50][:50]
     shaking = strong()
-    draws, samples = 160, 1024
+    draws, samples = int(os.environ.get("KOUROS_DRAWS", "80")), 1024
     mine = found(chosen, level(shaking), Sampling(samples, 2.0))
     rng = np.random.default_rng(11)
     fell = np.zeros(50)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from random import Random
@@ -26,6 +27,8 @@ from pipeline.records import ITEM_FIELDS
 CARNEGIE = load_mapping("carnegie")
 KEY = SourceKey("export.csv", "mapping", "code", "limits")
 Table = list[list[str]]
+SEEDS = int(os.environ.get("KOUROS_SEEDS", "3"))
+"""Histories of ten nights each; `make soak` makes 24."""
 
 
 class Export:
@@ -182,7 +185,7 @@ def rows_of(engine: Engine) -> set[tuple[object, ...]]:
         return {tuple(row) for row in connection.execute(select(SOURCE_ROW))}
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(SEEDS))
 def test_a_reading_of_what_changed_finds_what_one_from_nothing_finds(
     seed: int, real: Table, engine: Engine, tmp_path: Path
 ) -> None:

@@ -32,19 +32,18 @@ def serve(folder: Path, text: str) -> None:
     file.write_text(f"{head}[serve]\n{text}\n\n{after}", encoding="utf-8")
 
 
-@pytest.mark.parametrize(
-    "host", ["evil.example", "evil.example:80", "127.0.0.1.evil.example", "", "localhost@evil.example", "[::", "a b"]
-)
-def test_another_name_of_this_machine_is_refused(visitor: Visitor, host: str) -> None:
+def test_another_name_of_this_machine_is_refused(visitor: Visitor) -> None:
     """DNS rebinding: the page of a stranger whose name was pointed here comes with that name."""
-    got = visitor.get("/", headers={"Host": host})
-    assert got.status in (400, 421)
-    assert b"Vase" not in got.body
+    strangers = ("evil.example", "evil.example:80", "127.0.0.1.evil.example", "", "localhost@evil.example", "[::")
+    for host in (*strangers, "a b"):
+        got = visitor.get("/", headers={"Host": host})
+        assert got.status in (400, 421), host
+        assert b"Vase" not in got.body
 
 
-@pytest.mark.parametrize("host", ["localhost:1", "127.0.0.1", "LOCALHOST", "[::1]:8750", "localhost."])
-def test_its_own_names_are_answered(visitor: Visitor, host: str) -> None:
-    assert visitor.get("/", headers={"Host": host}).status == 200
+def test_its_own_names_are_answered(visitor: Visitor) -> None:
+    for host in ("localhost:1", "127.0.0.1", "LOCALHOST", "[::1]:8750", "localhost."):
+        assert visitor.get("/", headers={"Host": host}).status == 200, host
 
 
 def test_what_a_browser_may_do_is_said_on_every_answer(visitor: Visitor) -> None:

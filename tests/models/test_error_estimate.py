@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from itertools import product
 
@@ -21,7 +22,8 @@ from pipeline.motions.synthesis import sine
 from pipeline.quantities import Array, G
 from pipeline.resources import resource
 
-ROWS, MOTIONS = 40, 6
+ROWS, MOTIONS = int(os.environ.get("KOUROS_ROWS", "20")), 6
+"""Objects under each motion; `make soak` takes forty."""
 
 
 def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Array | float]:

@@ -19,7 +19,7 @@ from shaking import along_x
 
 from pipeline import Motion, respond
 from pipeline.cli import kouros
-from pipeline.models import MODELS, model_named
+from pipeline.models import MODELS
 from pipeline.quantities import G
 from pipeline.verification import self_measurement as numerics
 from pipeline.verification.extremes import complaint, motions, pushed
@@ -32,36 +32,36 @@ START = 60.0
 """Seconds that a process may take to start and compile."""
 
 
-def work(name: str, directions: int | None, answers: Queue[Any]) -> None:
-    """Run every case of a model and put (case, problem or "") into the queue."""
-    extra = {} if directions is None else {"directions": directions}
+def work(answers: Queue[Any]) -> None:
+    """Run every case of every model and put (case, problem or "") into the queue."""
+    shaken = motions()
     answers.put(("ready", ""))
-    columns = model_named(name).trials.extremes
-    for label, motion in motions().items():
-        for row in range(len(next(iter(columns.values())))):
-            one = {k: v[row] for k, v in columns.items()}
-            for tail in (None, 0.0, 5.0) if label == "plain" else (None,):
-                case = f"{name} {one} {extra} under {label}, tail {tail}"
-                answers.put((case, None))
-                try:
-                    table = respond(name, motion, tail=tail, **one, **extra)
-                except ValueError:
-                    answers.put((case, ""))
-                    continue
-                except Exception as problem:  # noqa: BLE001
-                    answers.put((case, repr(problem)))
-                    continue
-                answers.put((case, complaint(model_named(name), table.iloc[0])))
+    for model, directions in pushed():
+        extra = {} if directions is None else {"directions": directions}
+        columns = model.trials.extremes
+        for label, motion in shaken.items():
+            for row in range(len(next(iter(columns.values())))):
+                one = {k: v[row] for k, v in columns.items()}
+                for tail in (None, 0.0, 5.0) if label == "plain" else (None,):
+                    case = f"{model.name} {one} {extra} under {label}, tail {tail}"
+                    answers.put((case, None))
+                    try:
+                        table = respond(model.name, motion, tail=tail, **one, **extra)
+                    except ValueError:
+                        answers.put((case, ""))
+                        continue
+                    except Exception as problem:  # noqa: BLE001
+                        answers.put((case, repr(problem)))
+                        continue
+                    answers.put((case, complaint(model, table.iloc[0])))
     answers.put(("done", ""))
 
 
-@pytest.mark.parametrize(("name", "directions"), [(model.name, directions) for model, directions in pushed()])
-def test_nothing_hangs_or_is_nan_in_silence(name: str, directions: int | None) -> None:
-    # Forked from a server that has imported the models once for all of them.
+def test_nothing_hangs_or_is_nan_in_silence() -> None:
+    """In one process for all models: what is compiled is loaded once."""
     context = mp.get_context("forkserver")
-    context.set_forkserver_preload(["pipeline.verification.extremes", "pipeline.verification.self_measurement"])
     answers: Queue[Any] = context.Queue()
-    worker = context.Process(target=work, args=(name, directions, answers), daemon=True)
+    worker = context.Process(target=work, args=(answers,), daemon=True)
     worker.start()
     case, wrong, limit = "the start", [], START
     try:

@@ -21,9 +21,9 @@ from tests.night.changing import Changing, exported, leave_out_pages
 pytestmark = pytest.mark.slow_file
 
 SOAK = "KOUROS_SEQUENCES" in os.environ
-SEQUENCES = int(os.environ.get("KOUROS_SEQUENCES", "20"))
+SEQUENCES = int(os.environ.get("KOUROS_SEQUENCES", "7"))
 FIRST = int(os.environ.get("KOUROS_FIRST", "0"))
-EDITS = int(os.environ.get("KOUROS_EDITS", "8" if SOAK else "2"))
+EDITS = int(os.environ.get("KOUROS_EDITS", "8" if SOAK else "4"))
 """Changes of each sequence: every day each kind once at least, in a `make soak` any at any time."""
 
 

@@ -37,7 +37,8 @@ from tests.museum import few_samples
 pytestmark = pytest.mark.slow_file
 
 SILENT = Console(quiet=True)
-DAMAGES = int(os.environ.get("KOUROS_DAMAGES", "110"))
+DAMAGES = int(os.environ.get("KOUROS_DAMAGES", "45"))
+"""Every day as many as damage one file of each kind; `make soak` does a thousand."""
 SEED = 17
 DATABASE = "kouros.sqlite"
 EXPORTS = ("findings.csv", "objects.csv", "recommendations.csv")
@@ -174,6 +175,14 @@ def damages(folder: Path) -> Iterator[Damage]:
     """Yield the damages: two of three to the database, mostly not cut, the others to every other file in turn."""
     others = kept_files(folder)
     Random(SEED).shuffle(others)
+    # A file of each kind comes before a second one of any: folder and ending tell what wrote it.
+    seen: Counter[tuple[Path, str]] = Counter()
+    turns = {}
+    for file in others:
+        kind = file.parent, file.suffix
+        turns[file] = seen[kind]
+        seen[kind] += 1
+    others.sort(key=turns.__getitem__)
     for number in range(DAMAGES):
         if number % 3:
             yield Damage(number, Path(DATABASE), KINDS[number // 3 % 4 if number % 3 == 1 else number // 3 % 2])

@@ -24,13 +24,13 @@ STRIDE = int(os.environ.get("KOUROS_CALLS", "0"))
 """One call of so many is disturbed, from the first on; `make soak` disturbs each; 0: the sample of every day."""
 
 SAMPLE = {
-    "run": {"kill": [29, 180], "full disk": [47, 300]},
-    "import": {"kill": [17, 60], "full disk": [24, 60]},
-    "decide": {"kill": [20, 60], "full disk": [13, 60]},
-    "prune": {"kill": [150, 400]},
-    "report": {"kill": [90, 400], "full disk": [60, 400]},
+    "run": {"kill": [29, 360], "full disk": [47, 600]},
+    "import": {"kill": [17, 120], "full disk": [24, 120]},
+    "decide": {"kill": [20, 120], "full disk": [13, 120]},
+    "prune": {"kill": [150, 800]},
+    "report": {"kill": [90, 800], "full disk": [60, 800]},
 }
-"""Where the first is disturbed, and after how many the next: some thousand calls in all, of which two dozen."""
+"""Where the first is disturbed, and after how many the next: some thousand calls in all, of which a dozen or two."""
 
 NIGHT = 600
 """Calls that the night has at least, for it does have an import, a report and a database, and tidies up."""

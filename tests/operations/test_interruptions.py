@@ -26,7 +26,7 @@ from .disturbed import Nights, last, objects, whole
 
 pytestmark = pytest.mark.slow_file
 
-KILLS = int(os.environ.get("KOUROS_KILLS", "2"))
+KILLS = int(os.environ.get("KOUROS_KILLS", "1"))
 """How many runs are killed; `make soak` kills fifty."""
 
 

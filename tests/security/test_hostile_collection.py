@@ -1,4 +1,4 @@
-"""A thousand rows that mean harm, from import to report: nothing runs, leaves, escapes or is lost."""
+"""Rows that mean harm, from import to report: nothing runs, leaves, escapes or is lost."""
 
 from __future__ import annotations
 

@@ -18,6 +18,8 @@ from pipeline.verification import sampling_cost
 from pipeline.verification.sampling_cost import NUMBERS, SamplingCost, sampling_costs
 from pipeline.verification.tradeoff import Tradeoff
 
+pytestmark = pytest.mark.slow_file
+
 SILENT = Console(quiet=True)
 LEVEL = LevelMotions("pulse", "max", (half_sine_pulse(0.35 * G, 0.4, dt=0.01),))
 

@@ -34,7 +34,7 @@ def motion() -> Motion:
 
 @pytest.fixture(scope="module")
 def found(motion: Motion) -> tradeoff.Tradeoff:
-    return tradeoff.measure([motion], [], SILENT, objects=24)
+    return tradeoff.measure([motion], [], SILENT, objects=12)
 
 
 def of(found: tradeoff.Tradeoff, model: str, kind: str = "step") -> list[tradeoff.Setting]:

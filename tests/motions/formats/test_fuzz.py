@@ -1,7 +1,8 @@
 """Whatever is done to a file, a reader returns a stream of finite samples, or says the file, the line and the remedy.
 
-Each reader gets about a second of damage: cut off at each line, random bytes, lines exchanged, numbers replaced, lines
-repeated.  ``KOUROS_FUZZ_SECONDS=120`` gives each reader that many seconds, with a new seed that a failure names.
+Each reader gets a quarter of a second of damage, and twenty files at least: cut off at each line, random bytes, lines
+exchanged, numbers replaced, lines repeated.  ``KOUROS_FUZZ_SECONDS=120`` gives each reader that many seconds, with a
+new seed that a failure names.
 """
 
 from __future__ import annotations
@@ -152,9 +153,9 @@ def test_damage(name):
     chance = random.Random(seed)
     content = SPECIMENS[name][1]()
     readers = sum(SPECIMENS[other][0] == SPECIMENS[name][0] for other in SPECIMENS)
-    until = time.monotonic() + (0.5 if SECONDS is None else float(SECONDS) / readers)
+    until = time.monotonic() + (0.25 if SECONDS is None else float(SECONDS) / readers)
     rounds = 0
-    while time.monotonic() < until:
+    while time.monotonic() < until or rounds < 20:
         broken = damaged(content, chance)
         try:
             judge(name, broken)
@@ -163,7 +164,6 @@ def test_damage(name):
             print(f"seed {seed}, round {rounds}; the file is fuzz-{name}.bin")
             raise
         rounds += 1
-    assert rounds > 20
 
 
 @pytest.mark.parametrize("name", SPECIMENS)

@@ -1,0 +1,22 @@
+"""Makes what both workers of `make test` would else make at once: bytecode of the tests, and the compiled kernels.
+
+It runs beside the check of types, while the other core has nothing to do; where both are there it takes seconds.
+"""
+
+import sys
+
+import pytest
+
+from pipeline.analysis.response import respond
+from pipeline.cli.console import Console
+from pipeline.models import MODELS
+from pipeline.verification.extremes import shaking
+from pipeline.verification.tradeoff import measure
+
+if __name__ == "__main__":
+    # Every model at every step, with its charts, bounds and turned motions; then those that run along a line too.
+    measure([shaking()], [], Console(quiet=True), objects=2)
+    for model in MODELS:
+        if model.directions == 0:
+            respond(model.name, shaking(), directions=1, **model.trials.sample)
+    sys.exit(pytest.main(["--collect-only", "--quiet", "--quiet"]))
