@@ -16,6 +16,7 @@ from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.installed import ON_TOP
 from pipeline.mitigate.measures import MEASURES
+from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED
 from pipeline.mitigate.measures.horizontal_isolator import GENERIC
 from pipeline.mitigate.proposals import IT
@@ -100,6 +101,8 @@ def _of_measures() -> Iterator[str]:
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
     yield from (
+        TWICE,
+        FOURFOLD,
         FINISHED,
         ONLY_HERE,
         AT_BEST,

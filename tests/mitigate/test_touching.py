@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.response import respond
-from pipeline.mitigate.measures.clearance import TWICE
+from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED, HARMLESS
 from pipeline.mitigate.search import ANCHORED
 from pipeline.quantities import G
@@ -156,6 +156,9 @@ def test_what_swings_hangs_from_what_bears_twice_its_weight() -> None:
     assert advice.measure == "clearance"
     assert TWICE in advice.sentence
     assert "twice its weight" in plain_measure(advice, Units("cm"))
+    # From half a metre and less it is tugged harder than any pendulum that is let go.
+    short = solve(replace(lamp, suspension_length_m=0.4), demo_motion())
+    assert (short.measure, FOURFOLD in short.sentence, TWICE in short.sentence) == ("clearance", True, False)
     swing = advice.parameters["movement"]
     assert 3.0 - 2.0 * (1.0 - swing**2) ** 0.5 < 2.0
 

@@ -21,17 +21,27 @@ LIGHT, HALL = 50.0, 2.0
 HAND = 0.10
 """Room that is spared around anything [m]; more only around what is itself as wide: judgement."""
 
-TWICE = "Its hook, its chain or cable and their anchor in the ceiling must bear at least twice its weight."
-"""Follows the sentence of a measure that lets what hangs from above swing.
+TWICE = "Its hook, its chain or cable and their anchor in the ceiling must be rated for at least twice its weight."
+FOURFOLD = (
+    "It hangs short, and is tugged when it swings: its hook, its chain or cable and their anchor in the ceiling must "
+    "be rated for at least four times its weight."
+)
+"""One of them follows the sentence of a measure that lets what hangs from above swing.
 
-By integrations under the eleven motions of the demonstration: 1.2 to 1.3 times on the mean and 1.7 at most, with a
-pendulum of half a metre and more.
+By integrations under the eleven motions of the demonstration: 1.2 to 1.3 times its weight on the mean and 1.7 at most,
+with a pendulum of SHORT and more; 3.4 at most with one of 0.3 m.  Rated is what a load may be day by day.
 """
+
+SHORT = 0.5
+"""Length from hook to centre of gravity [m] below which what swings is tugged."""
 
 
 def hung_by(scene: Scene) -> str:
     """Return what is said of what an object hangs by that is let swing from above, behind a space; "" of others."""
-    return f" {TWICE}" if scene.support is Support.SUSPENDED else ""
+    if scene.support is not Support.SUSPENDED:
+        return ""
+    length = scene.parameters.get("length")
+    return f" {TWICE if length is not None and length.low >= SHORT else FOURFOLD}"
 
 
 class Clearance(Measure):

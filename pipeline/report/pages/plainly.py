@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.fixing_rows import fixing_strengths
-from pipeline.mitigate.measures.clearance import TWICE
+from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED
 from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, SIZED, UPPER_FIRST
 from pipeline.records import Finding, Recommendation
@@ -46,8 +46,7 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     """
     told, numbers = _advised(advice, units)
     told += [said(row.care) for row in fixing_strengths().values() if row.care in advice.sentence]
-    if TWICE in advice.sentence:
-        told.append(said(TWICE))
+    told += [said(one) for one in (TWICE, FOURFOLD) if one in advice.sentence]
     if FINISHED in advice.sentence:
         told.append(_("It has paint, gilding or lacquer: ask a conservator first where it may be touched."))
     if OF_MEAN in advice.sentence:
