@@ -58,7 +58,10 @@ def test_a_measure_of_the_museums_own_takes_what_it_is_like_takes_unless_it_has_
 @pytest.mark.parametrize(
     ("rows", "said"),
     [
-        (GOOD.replace("wax", "glue"), r"line 2, measure 'glue': column 'measure': is 'glue'.*use one of chocks, clearance"),
+        (
+            GOOD.replace("wax", "glue"),
+            r"line 2, measure 'glue': column 'measure': is 'glue'.*use one of chocks, clearance",
+        ),
         (GOOD.replace("handler", "plumber"), r"line 2, measure 'wax': column 'trade': input should be 'handler'"),
         (GOOD.replace("0.2,0.1", "-0.2,-0.3"), r"column 'hours': input should be greater than or equal to 0"),
         (GOOD.replace("0.4,0.5", "0.15,0.5"), r"column 'hours_high': hours_low <= hours <= hours_high does not hold"),
