@@ -42,7 +42,7 @@ types: $(STAMP)
 
 # While types are checked the other core makes what both workers of the tests would else make at once.
 ready: $(STAMP)
-	@PYTHONDONTWRITEBYTECODE= $(BIN)/python -m tests.ready >/dev/null
+	@PYTHONDONTWRITEBYTECODE= $(BIN)/python -m tests.ready
 
 # Offline; a broken link, a page that no table of contents names and an unreadable docstring are errors.
 docs: $(STAMP)  ## the documentation, in build/docs

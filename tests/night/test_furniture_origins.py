@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 from lxml import html
 
 from pipeline.records import Origin
-from pipeline.report.pages.describe import furniture_known
+from pipeline.report.pages.scene_words import furniture_known
 from pipeline.settings import load_settings
 from tests.museum import museum_of, night, vases
 
