@@ -35,6 +35,9 @@ LONG_RATIO = 0.35
 PGD_MOST = 10.0
 """m of a processed record; the largest permanent displacement recorded is about 10."""
 
+OFFSET = 0.05
+"""Mean of a vertical [g] that no processed record has (judgement): a logger's has 1."""
+
 RESIDUAL = 0.2
 """Most mean velocity in the last tenth of a processed record relative to its PGV.
 
@@ -166,16 +169,19 @@ def mean_period(motion: Motion) -> float:
 
 def _residual(motion: Motion, v: Array, u: Array) -> str:
     n = motion.samples
-    # The vertical too: that of a logger has gravity in it.
-    peaks = np.abs(v).max(axis=1)
-    left = np.abs(v[:, int(0.9 * n) :].mean(axis=1))
+    peaks = np.abs(v[:2]).max(axis=1)
+    left = np.abs(v[:2, int(0.9 * n) :].mean(axis=1))
     row = int(np.argmax(left))
     if left[row] > RESIDUAL * peaks[row]:
         return (
-            f"it is called processed, and in the last tenth the velocity of its {'xyz'[row]} component is still "
+            f"it is called processed, and in the last tenth the velocity of its {'xy'[row]} component is still "
             f"{100.0 * left[row]:.3g} cm/s, {left[row] / peaks[row]:.0%} of its peak, more than {RESIDUAL:.0%}"
         )
-    pgd = float(np.abs(u).max())
+    pgd = float(np.abs(u[:2]).max())
     if pgd > PGD_MOST:
         return f"it is called processed, and its displacement reaches {pgd:.3g} m, more than {PGD_MOST:g} m"
+    # A drift of the vertical moves nothing; an offset is a part of what holds things down.
+    mean = float(motion.acceleration[2].mean()) / G
+    if abs(mean) > OFFSET:
+        return f"it is called processed, and the mean of its vertical is {mean:.3g} g: gravity may be in it"
     return ""

@@ -62,7 +62,7 @@ def test_a_raw_record_called_processed_is_asked_about(three, write_manifest):
 def test_gravity_in_a_vertical_called_processed_is_asked_about(three, write_manifest):
     """As loggers and telephones write it."""
     three(z=0.5 * tone() + G)
-    asked(write_manifest(), "drift", "the velocity of its z component", "processed = false")
+    asked(write_manifest(), "drift", "the mean of its vertical is 1 g", "processed = false")
 
 
 def test_a_spectrum_without_a_name_is_refused(three, write_manifest):
