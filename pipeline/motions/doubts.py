@@ -17,6 +17,9 @@ DRIFTS = ": its acceleration drifts against the velocity of its files"
 FACTOR = ", and does not say whether its numbers have it already: scale in the manifest multiplies them"
 """Ends what is said of a file whose head names a scale."""
 
+NO_RECORD = "; it may be a spectrum or an envelope, where it is no push of a test"
+"""Ends what is said of numbers that never cross zero."""
+
 
 def doubts(steps: Sequence[str]) -> tuple[str, ...]:
     """Return what is doubtful of a motion.
@@ -40,4 +43,6 @@ def doubts(steps: Sequence[str]) -> tuple[str, ...]:
         elif FACTOR in step:
             # Of each component.
             found.append(step.partition(": ")[2])
+        elif step.endswith(NO_RECORD):
+            found.append(step)
     return tuple(dict.fromkeys(found))

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.motions import knet
+from pipeline.motions.doubts import NO_RECORD
 from pipeline.motions.earthquakes import earthquakes, listed, window_of
 from pipeline.motions.errors import MotionError, judged, refusal
 from pipeline.motions.formats.trace_headers import channel_code
@@ -156,8 +157,7 @@ def read_record(folder: str | Path, record: Record) -> Recording:
         seen = slice(*((0, trace.stats.npts) if part is None else part.inside(trace)))
         _check(file, key, component, trace, seen)
         if (still := one_sided(trace.data[seen])) is not None:
-            remedy = "it may be a spectrum or an envelope: give the acceleration against time"
-            judged(record.accept, "one_sided", file, f"component {component.axis} ({key!r})", still, remedy, steps)
+            steps.append(f"component {component.axis} ({key!r}) {still}{NO_RECORD}")
         flat = clipped(trace.data[None, seen], trace.stats.delta, (f"component {component.axis} ({key!r})",))
         if flat is None and inventory is not None and (full := full_scale(trace.data[seen])) is not None:
             at = full[1] + seen.start

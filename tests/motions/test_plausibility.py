@@ -65,14 +65,6 @@ def test_gravity_in_a_vertical_called_processed_is_asked_about(three, write_mani
     asked(write_manifest(), "drift", "the mean of its vertical is 1 g", "processed = false")
 
 
-def test_a_spectrum_without_a_name_is_refused(three, write_manifest):
-    """Whatever it is called: its numbers never cross zero."""
-    t = DT * np.arange(1, 4001)
-    three(*(a * t * np.exp(1.0 - t) for a in (1.0, 2.0, 0.5)))
-    with pytest.raises(MotionError, match=r"never below zero, and crosses its own trend \d times in 4000 samples"):
-        read_motion(write_manifest())
-
-
 def test_a_processed_displacement_beyond_any_fault_is_asked_about():
     """A velocity of 1 m/s for 30 s and back is 30 m; with its end at rest the velocity alone says nothing."""
     v = np.interp(np.arange(6000) * DT, [0, 10, 15, 40, 45, 60], [0, 0, 1, 1, 0, 0])

@@ -7,7 +7,7 @@ from uuid import uuid4
 import pytest
 from sqlalchemy import create_engine, make_url, text
 
-from pipeline.analysis import classify
+from pipeline.analysis import scene_parameters
 from pipeline.cli.differing import plain_changes
 from pipeline.collection.database import database_url
 from pipeline.night import prepare, units
@@ -163,7 +163,7 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
     monkeypatch.setattr(prepare, "code_version", lambda: "another")
     monkeypatch.setattr(units, "code_version", lambda: "another")
     monkeypatch.setattr(
-        classify, "clearance_of", lambda *_: Estimate(50.0, "m", Origin.ASSUMED, 50.0, 50.0, "room", "")
+        scene_parameters, "clearance_of", lambda *_: Estimate(50.0, "m", Origin.ASSUMED, 50.0, 50.0, "room", "")
     )
     edit(manifest, "scale = 0.2", "scale = 1.0")
     night(tmp_path)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.browser
 
-MOST_BYTES = 1_470_000
+MOST_BYTES = 1_490_000
 """The aim is 1.5 MB; real galleries of longer sentences and titles need what is left.
 
 62 % of these objects are to be acted on, and each of them has a card: sizes are assumed where a record has none.
