@@ -109,7 +109,7 @@ def finding(record: RunRecord, number: str, model: str) -> Finding:
         (Wish("1", KIND.VERDICT, ["pass"], why="x"), r"say by --model which verdict"),
         (Wish("1", KIND.VERDICT, ["maybe"], why="x", model="standing"), r"no verdict 'maybe'; use one of pass, fail"),
         (Wish("1", KIND.INSTALLED, why="x"), r"say what is installed: one of chocks, clearance"),
-        (Wish("1", KIND.INSTALLED, ["glue"], why="x"), r"no measure that can be installed 'glue'; use one of chocks, clear"),
+        (Wish("1", KIND.INSTALLED, ["glue"], why="x"), r"no measure that can be installed 'glue'; use one of chocks"),
         (Wish("1", KIND.INSTALLED, ["remove"], why="x"), r"no measure that can be installed 'remove'"),
         (Wish("1", KIND.INSTALLED, ["clearance"], why="x"), r"clearance needs clearance_m \(room on all sides\)"),
         (Wish("1", KIND.INSTALLED, ["clearance", "0.1"], why="x"), r"write NAME=VALUE"),
