@@ -289,15 +289,13 @@ class _Making:
             return None
         unit, stats = own_unit(silent[0][1].stats)[0], silent[0][1].stats
         what = "are counts" if unit == "counts" else "may be counts" if silent[0][1].data.dtype.kind == "i" else "?"
-        asked = (
-            f"give the station's StationXML (level=response, network {stats.network or '?'}, station "
-            f"{stats.station or '?'}) among the files, or their unit"
-        )
-        text = f"No file says the unit of its samples{'' if what == '?' else f', which {what}'}: {asked}"
+        text = "No file says the unit of its samples"
         if word := stats.get("kouros", {}).get("unit_said"):
             text = f"Its file says {one_line(word)!r} for the unit, which is none that is known: say what one of it is"
-        elif what == "?" and not stats.network:
-            text = "No file says the unit of its samples"
+        elif what != "?" or stats.network:
+            text += "" if what == "?" else f", which {what}"
+            text += f": give the station's StationXML (level=response, network {stats.network or '?'}, station "
+            text += f"{stats.station or '?'}) among the files, or their unit"
         if partly:
             text += f" ({', '.join(partly)} knows some of its channels only)"
         option = "STATION.xml, or --unit UNIT" if what != "?" else f"--unit UNIT (one of {', '.join(UNITS)})"
