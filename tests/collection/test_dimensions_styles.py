@@ -5,6 +5,7 @@ Truth: the fraction that was written, times the exact definition of the unit, ro
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -211,3 +212,25 @@ PIECES = st.sampled_from(
 def test_any_mixture_of_its_pieces_is_read(pieces, unit):
     d = parse("".join(pieces), default_unit=unit)
     assert all(p.value is None or p.value >= 0.0 for p in d.parts)
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("40/30 cm", [("height", 0.4), ("width", 0.3)]),
+        ("40 / 30 / 2,5 cm", [("height", 0.4), ("width", 0.3), ("depth", 0.025)]),
+        ("24/18/6 in.", [("height", 24 * 0.0254), ("width", 18 * 0.0254), ("depth", 6 * 0.0254)]),
+        ("Höhe/Breite/Tiefe: 11/5/8 cm", [("height", 0.11), ("width", 0.05), ("depth", 0.08)]),
+        # What one dimension has two numbers of reaches from one to the other; the larger one counts.
+        ("Durchmesser: 10/12 cm", [("diameter", 0.12)]),
+        ("3/4 cm", [("unlabelled", 0.0075)]),
+        # A slip for 11 5/8 in., as its conversion says: 29.5 cm.
+        ('Plate 11/5/8 x 9 5/16"', [("height", 11.625 * 0.0254), ("width", 9.3125 * 0.0254)]),
+        ('5 1/2 / 3 1/4 in.', [("height", 5.5 * 0.0254), ("width", 3.25 * 0.0254)]),
+        ("dated 11/5/2016, 4 x 5 cm", [("height", 0.04), ("width", 0.05)]),
+    ],
+)  # fmt: skip
+def test_strokes_part_sizes_where_they_make_no_fraction(text: str, read: list[tuple[str, float]]) -> None:
+    found = [(part.dimension, part.value) for part in parse(text).parts]
+    assert [name for name, _ in found] == [name for name, _ in read]
+    assert [value for _, value in found] == pytest.approx([value for _, value in read], rel=1e-12)

@@ -54,6 +54,7 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\bgr\.(?=\s*(?:H|Br?|T|Dm|D|L|Höhe|Breite|Tiefe|Länge|Durchmesser)\b)"), "max"),
     (re.compile(rf"(?i)(?<=[^\W\d_]),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),  # Height, max.: 31 cm
     (re.compile(rf"(?i)(?<=[^\W\d_]\.),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),
+    (re.compile(r"(?:(?<=\d/\d)|(?<=\d/\d\d)) / (?=\d)"), " x "),  # 5 1/2 / 3 1/4 in.
     (re.compile(r"(?i)\b(?:por|sur|per)(?=\s+\d)"), "x  "),  # 30 cm de alto por 20 de ancho
     (re.compile(r"(?i)(?:(?<=\bde )large\b|\blarge(?=\s+de\s+\d))"), "larg "),
     (re.compile(r"(?i)\bhors[ -]tout"), "horstout "),
@@ -70,6 +71,18 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\bhandle to handle\b"), "across across   "),
     (re.compile(r"(?i)\bhandle to spout\b"), "across across  "),
 )
+_SLASHED = re.compile(
+    rf"(?<![\d/.,])(?<!\d{_BLANK})\d{{1,4}}(?:[.,]\d{{1,2}})?(?:{_BLANK}?/{_BLANK}?\d{{1,4}}(?:[.,]\d{{1,2}})?){{1,3}}"
+    rf"(?={_BLANK}?(?P<unit>cm\b|mm\b|m\b(?!\.)|in(?:ch(?:es)?)?\b|[\"”″]|x{_BLANK}?\d))",
+    re.IGNORECASE,
+)
+"""Sizes with strokes between them, "40/30 cm", or numbers with fractions, "3/4 cm", "11/5/8 in."."""
+_BEFORE = re.compile(r"(?:[/x×]\s?)?\b([^\W\d_]+)[.:\s]*\Z")
+"""The word before a size, with what joins it to another."""
+_PARTS = frozenset({"2", "3", "4", "5", "8"})
+"""What a fraction of a metric unit has below its stroke."""
+_HALVED = frozenset({"2", "4", "8", "16", "32", "64"})
+"""The same of inches."""
 _EXTREME = re.compile(r"(\w{1,4})(max|min)")
 """A label and its qualifier in one word: Dmax, Hmin."""
 _MIXED = re.compile(rf"(\d[\d,]*)[^\d{_V}]*(?:(\d+)\D+(\d+)|([{_V}]))")
@@ -169,7 +182,30 @@ def _plain(text: str) -> str:
     text = text.translate(_ALIKE)
     for pattern, words in _SAME_LENGTH:
         text = pattern.sub(words, text)
-    return text
+    return _SLASHED.sub(_parted, text) if "/" in text else text
+
+
+def _parted(slashed: re.Match[str]) -> str:
+    """Return sizes that strokes part with an x between them, of one dimension with a dash; fractions as they are."""
+    text: str = slashed[0]
+    *before, above, below = (piece.strip() for piece in text.split("/"))
+    unit = slashed["unit"].lower()
+    metric, inches = unit.endswith("m"), unit.startswith("in")
+    whole = above.isdigit() and below.isdigit() and int(above) < int(below)
+    if not before and (not metric or (whole and (above == "1" or below in _PARTS))):
+        return text  # 3/4 cm; of inches also 71/2, which lost its blank
+    if len(before) == 1 and not metric and whole and below in _HALVED and before[0].isdigit():
+        return text.replace("/", " ", 1)  # 11/5/8 in. is met for 11 5/8
+    if not (metric or inches):
+        return text  # a date in quotes
+    label = _BEFORE.search(slashed.string, 0, slashed.start())
+    of_one = label is not None and _is_side(label[1].lower()) and not label[0].startswith(("/", "x", "×"))
+    # "D. 10/12 cm": from one to the other.
+    return text.replace("/", "-" if of_one and not before else "x")
+
+
+def _is_side(word: str) -> bool:
+    return word in label_words() or meanings().get(word, ("", ""))[0] == "dimension"
 
 
 def _is_legend(word: str) -> bool:
