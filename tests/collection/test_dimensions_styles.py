@@ -223,7 +223,9 @@ def test_any_mixture_of_its_pieces_is_read(pieces, unit):
         ("Höhe/Breite/Tiefe: 11/5/8 cm", [("height", 0.11), ("width", 0.05), ("depth", 0.08)]),
         # What one dimension has two numbers of reaches from one to the other; the larger one counts.
         ("Durchmesser: 10/12 cm", [("diameter", 0.12)]),
+        ("30/40 x 20 cm", [("height", 0.4), ("width", 0.2)]),
         ("3/4 cm", [("unlabelled", 0.0075)]),
+        ("3/4 x 2 cm", [("height", 0.0075), ("width", 0.02)]),
         # A slip for 11 5/8 in., as its conversion says: 29.5 cm.
         ('Plate 11/5/8 x 9 5/16"', [("height", 11.625 * 0.0254), ("width", 9.3125 * 0.0254)]),
         ('5 1/2 / 3 1/4 in.', [("height", 5.5 * 0.0254), ("width", 3.25 * 0.0254)]),

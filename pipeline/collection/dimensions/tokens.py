@@ -73,7 +73,9 @@ _SAME_LENGTH = (
 )
 _SLASHED = re.compile(
     rf"(?<![\d/.,])(?<!\d{_BLANK})\d{{1,4}}(?:[.,]\d{{1,2}})?(?:{_BLANK}?/{_BLANK}?\d{{1,4}}(?:[.,]\d{{1,2}})?){{1,3}}"
-    rf"(?={_BLANK}?(?P<unit>cm\b|mm\b|m\b(?!\.)|in(?:ch(?:es)?)?\b|[\"”″]|x{_BLANK}?\d))",
+    rf"(?={_BLANK}?(?P<unit>cm\b|mm\b|m\b(?!\.)|in(?:ch(?:es)?)?\b|[\"”″]|x{_BLANK}?\d))"
+    rf"(?=(?P<beside>{_BLANK}?x{_BLANK}?\d{{1,4}}(?:[.,]\d{{1,2}})?(?:{_BLANK}?x{_BLANK}?\d{{1,4}}(?:[.,]\d{{1,2}})?)?"
+    rf"{_BLANK}?[cm]m\b)?)",
     re.IGNORECASE,
 )
 """Sizes with strokes between them, "40/30 cm", or numbers with fractions, "3/4 cm", "11/5/8 in."."""
@@ -190,7 +192,8 @@ def _parted(slashed: re.Match[str]) -> str:
     text: str = slashed[0]
     *before, above, below = (piece.strip() for piece in text.split("/"))
     unit = slashed["unit"].lower()
-    metric, inches = unit.endswith("m"), unit.startswith("in")
+    beside = bool(slashed["beside"])
+    metric, inches = unit.endswith("m") or beside, unit.startswith("in")
     whole = above.isdigit() and below.isdigit() and int(above) < int(below)
     if not before and (not metric or (whole and (above == "1" or below in _PARTS))):
         return text  # 3/4 cm; of inches also 71/2, which lost its blank
@@ -200,8 +203,8 @@ def _parted(slashed: re.Match[str]) -> str:
         return text  # a date in quotes
     label = _BEFORE.search(slashed.string, 0, slashed.start())
     of_one = label is not None and _is_side(label[1].lower()) and not label[0].startswith(("/", "x", "×"))
-    # "D. 10/12 cm": from one to the other.
-    return text.replace("/", "-" if of_one and not before else "x")
+    # "D. 10/12 cm", "30/40 x 20 cm": from one to the other.
+    return text.replace("/", "-" if (of_one or beside) and not before else "x")
 
 
 def _is_side(word: str) -> bool:
