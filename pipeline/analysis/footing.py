@@ -7,7 +7,7 @@ the overall size, not all may bear (tables/contacts.csv).
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from math import radians, tan
 from typing import Self
 
@@ -17,7 +17,7 @@ from pipeline.errors import InputError
 from pipeline.records import ContactPolygon, Estimate, Item, Origin
 from pipeline.records import phrases as say
 from pipeline.tables import table
-from pipeline.tables.rows import SOME_WORDS, Entries, Number, Optional, checked
+from pipeline.tables.rows import Entries, Number, Optional, any_of, checked
 
 ALONG = {
     "half_base_width": 0.0,
@@ -228,7 +228,12 @@ def rolling(item: Item) -> Bearing | None:
 
 
 def _named(item: Item) -> Bearing | None:
-    text = f"{item.object_name}; {item.title}; {item.medium}; {item.displayed}"
+    return _told(f"{item.object_name}; {item.title}; {item.medium}; {item.displayed}")
+
+
+# Asked of an object when it is classed, and by each measure that is tried on it.
+@lru_cache(maxsize=4096)
+def _told(text: str) -> Bearing | None:
     return next((row for pattern, row in _patterns() if pattern.search(text)), None)
 
 
@@ -243,13 +248,7 @@ _KEPT = re.compile(
 
 @cache
 def _patterns() -> tuple[tuple[re.Pattern[str], Bearing], ...]:
-    out = []
-    for row in bearings():
-        words = (re.escape(word).replace(r"\*", SOME_WORDS) for word in row.words)
-        # Japanese parts no words from each other.
-        pattern = "|".join(word if word >= "\u2e80" else rf"\b{word}\b" for word in words)
-        out += [(re.compile(pattern, re.IGNORECASE), row)] if pattern else []
-    return tuple(out)
+    return tuple((any_of(row.words), row) for row in bearings() if row.words)
 
 
 def _borne(side: Estimate, item: Item, object_class: str) -> Estimate:

@@ -38,11 +38,9 @@ def doubts(steps: Sequence[str]) -> tuple[str, ...]:
     for step in steps:
         if UNDECIDED in step:
             found.append("; ".join(step[step.index(UNDECIDED) :].split("; ")[:2]))
-        elif step.startswith(MAY_HOLD) or ALL_USED in step or DRIFTS in step:
+        elif step.startswith(MAY_HOLD) or ALL_USED in step or DRIFTS in step or step.endswith(NO_RECORD):
             found.append(step)
         elif FACTOR in step:
             # Of each component.
             found.append(step.partition(": ")[2])
-        elif step.endswith(NO_RECORD):
-            found.append(step)
     return tuple(dict.fromkeys(found))

@@ -12,7 +12,7 @@ from pipeline.records import Furniture
 from pipeline.tables import Range, Row, TableError, read_table, table
 from pipeline.tables.assumed_rows import AssumedRow, Friction, Material, ObjectClass, PairRow, WallDamping
 from pipeline.tables.furniture_rows import FurnitureRow
-from pipeline.tables.rows import checked
+from pipeline.tables.rows import any_of, checked
 from pipeline.tables.surface_rows import met_on, surfaces_in
 
 UNKNOWN = "unknown"
@@ -42,7 +42,7 @@ class AssumedValues:
 
     @cached_property
     def _words(self) -> tuple[tuple[re.Pattern[str], Material], ...]:
-        return tuple((_any_of(one.words), one) for one in self.materials.values() if one.words)
+        return tuple((any_of(one.words), one) for one in self.materials.values() if one.words)
 
     @property
     def own(self) -> dict[str, int]:
@@ -128,7 +128,6 @@ class AssumedValues:
         return tuple(_matching(self.damping, wall, back))
 
 
-_UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 _FINISH = re.compile(
     r"\b(?:\w+-|(?:tin|lead|salt|silver|copper|iron)\s+)(?=glaze)"
     r"|\b\w+-(?:plated|coated|painted|leafed|fired|colou?red|toned|inlaid|trimmed|mounted|lined)\b"
@@ -142,14 +141,6 @@ _FINISH = re.compile(
     r"|\b(?:yeux|occhi|ojos)\s+(?:de|en|di|in)\s+(?:verre|vetro|vidrio|cristal)\b|金箔|金泥|玉眼",
     re.IGNORECASE,
 )
-
-
-def _any_of(words: Sequence[str]) -> re.Pattern[str]:
-    # Chinese, Japanese and Korean part no words from each other.
-    within = [re.escape(word) for word in words if _UNPARTED.match(word)]
-    parted = [re.escape(word) for word in words if not _UNPARTED.match(word)]
-    # One boundary for all: to look for it before each word took four times as long.
-    return re.compile("|".join([*within, *([rf"\b(?:{'|'.join(parted)})\b"] if parted else [])]), re.IGNORECASE)
 
 
 @lru_cache(maxsize=65536)

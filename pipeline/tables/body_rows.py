@@ -9,7 +9,7 @@ from pydantic import Field, ValidationInfo, field_validator
 from pipeline.errors import InputError
 from pipeline.tables import table
 from pipeline.tables.assumed_rows import ObjectClass, Share
-from pipeline.tables.rows import SOME_WORDS, Entries, Number, TableRow, Text, YesNo, checked, in_order
+from pipeline.tables.rows import Entries, Number, TableRow, Text, YesNo, any_of, checked, in_order
 
 PAIR = "pair"
 """Two bodies that stand on each other and are followed as one."""
@@ -139,7 +139,6 @@ def body_of(text: str, rule: str, object_class: str, material: str, height: floa
 def _patterns() -> tuple[tuple[re.Pattern[str] | None, BodyRow], ...]:
     out = []
     for row in body_rows():
-        named = (re.escape(word) for word in row.words if not word.startswith(_BY_RULE))
-        words = [rf"\b{word}\b".replace(r"\*", SOME_WORDS) for word in named]
-        out.append((re.compile("|".join(words), re.IGNORECASE) if words else None, row))
+        words = [word for word in row.words if not word.startswith(_BY_RULE)]
+        out.append((any_of(words) if words else None, row))
     return tuple(out)

@@ -5,10 +5,7 @@ from collections.abc import Collection
 from functools import cache, lru_cache
 
 from pipeline.tables import table
-from pipeline.tables.rows import Entries, TableRow, Text, checked
-
-_UNPARTED = "\u2e80"
-"""Characters from here on are of writings that part no words from each other."""
+from pipeline.tables.rows import Entries, TableRow, Text, any_of, checked
 
 
 class FinishRow(TableRow):
@@ -63,8 +60,4 @@ def finishes_in(text: str, materials: Collection[str]) -> tuple[FinishRow, ...]:
 
 @cache
 def _patterns() -> tuple[tuple[re.Pattern[str], FinishRow], ...]:
-    out = []
-    for row in finish_rows():
-        words = (re.escape(word) if word >= _UNPARTED else rf"\b{re.escape(word)}\b" for word in row.words)
-        out.append((re.compile("|".join(words), re.IGNORECASE), row))
-    return tuple(out)
+    return tuple((any_of(row.words), row) for row in finish_rows())

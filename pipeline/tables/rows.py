@@ -39,6 +39,8 @@ BUT_NOT = re.compile(rf"(?:\b(?:{_DENIED})\s+(?:\w+\s+){{0,3}}|\bun)$", re.IGNOR
 SOME_WORDS = r"(?:\w+\W+){0,3}"
 """What * stands for in the words of a table: up to three words."""
 
+_UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
+
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
 
@@ -196,6 +198,22 @@ def _one(adapter: TypeAdapter[Model], row: Row, where: str, named: str, context:
 def _short(cell: object) -> str:
     shown = repr(cell)
     return shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."
+
+
+def any_of(words: Iterable[str]) -> re.Pattern[str]:
+    """Return what finds any of the words of a table, one at least, in small letters or capitals.
+
+    Parameters
+    ----------
+    words : iterable of str
+        Whole words or phrases, in which * stands for up to three words; Chinese, Japanese and Korean ones, which
+        nothing parts from each other, are found within others.
+    """
+    escaped = [(word, re.escape(word).replace(r"\*", SOME_WORDS)) for word in words]
+    within = [pattern for word, pattern in escaped if _UNPARTED.match(word)]
+    parted = [pattern for word, pattern in escaped if not _UNPARTED.match(word)]
+    # One boundary for all: to look for it before each word took four times as long.
+    return re.compile("|".join([*within, *([rf"\b(?:{'|'.join(parted)})\b"] if parted else [])]), re.IGNORECASE)
 
 
 def once(values: Iterable[str], column: str, file: str) -> None:

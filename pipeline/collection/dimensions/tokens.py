@@ -71,11 +71,11 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\bhandle to handle\b"), "across across   "),
     (re.compile(r"(?i)\bhandle to spout\b"), "across across  "),
 )
+_SIZE = r"\d{1,4}(?:[.,]\d{1,2})?"
 _SLASHED = re.compile(
-    rf"(?<![\d/.,])(?<!\d{_BLANK})\d{{1,4}}(?:[.,]\d{{1,2}})?(?:{_BLANK}?/{_BLANK}?\d{{1,4}}(?:[.,]\d{{1,2}})?){{1,3}}"
+    rf"(?<![\d/.,])(?<!\d{_BLANK}){_SIZE}(?:{_BLANK}?/{_BLANK}?{_SIZE}){{1,3}}"
     rf"(?={_BLANK}?(?P<unit>cm\b|mm\b|m\b(?!\.)|in(?:ch(?:es)?)?\b|[\"”″]|x{_BLANK}?\d))"
-    rf"(?=(?P<beside>{_BLANK}?x{_BLANK}?\d{{1,4}}(?:[.,]\d{{1,2}})?(?:{_BLANK}?x{_BLANK}?\d{{1,4}}(?:[.,]\d{{1,2}})?)?"
-    rf"{_BLANK}?[cm]m\b)?)",
+    rf"(?=(?P<beside>(?:{_BLANK}?x{_BLANK}?{_SIZE}){{1,2}}{_BLANK}?[cm]m\b)?)",
     re.IGNORECASE,
 )
 """Sizes with strokes between them, "40/30 cm", or numbers with fractions, "3/4 cm", "11/5/8 in."."""

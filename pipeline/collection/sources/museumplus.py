@@ -203,13 +203,11 @@ def _measured(item: Any, unit: str | None) -> Measurements:
         # An order that names as many sides is believed; other numbers are kept as what nobody could name.
         numbers += zip(ordered, sides if len(sides) == len(ordered) else [None] * len(ordered), strict=True)
         for field, kind in numbers:
-            if said.get(field):
-                mass = kind == "weight"
-                named = said.get("UnitWeightVoc" if mass else "UnitDdiVoc") or said.get("UnitVoc") or ""
-                if mass and not named:
-                    named = said.get("UnitDdiVoc", "") if said.get("UnitDdiVoc") in ("g", "kg") else ""
-                called = f"{kind_said} {kind or ''}".strip()
-                out.take(kind, said[field], named, part, said=called)
+            mass = kind == "weight"
+            named = said.get("UnitWeightVoc" if mass else "UnitDdiVoc") or said.get("UnitVoc") or ""
+            if mass and not named:
+                named = said.get("UnitDdiVoc", "") if said.get("UnitDdiVoc") in ("g", "kg") else ""
+            out.take(kind, said[field], named, part, said=f"{kind_said} {kind or ''}".strip())
     return out
 
 
