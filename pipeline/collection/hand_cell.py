@@ -40,6 +40,10 @@ _LESSER = re.compile(
 _MOST = {"in": 12, "oz": 16, "cm": 100}
 """Of the lesser unit in one of the greater."""
 _ZERO = re.compile(r"0+(?:[.,]0*)?(?![\d.,/]|\s*[\d/])")
+_BARE = re.compile(r"\d+\s*/\s*\d+(?!\D*\d)")
+"""A fraction that nothing with figures follows."""
+_PARTS = frozenset({2, 3, 4, 5, 6, 8, 10, 12, 16, 32, 64})
+"""What people part a unit into: 30/40 are two numbers."""
 _OTHERS = {
     "deg": {"": 1.0, "°": 1.0, "deg": 1.0, "degree": 1.0, "degrees": 1.0, "grad": 1.0, "gradi": 1.0, "grados": 1.0},
     "Hz": {"": 1.0, "hz": 1.0, "hertz": 1.0, "/s": 1.0},
@@ -163,9 +167,9 @@ def _measured(cell: str, plain: str, figures: str, unit: str) -> HandCell:
     number = _NUMBER.fullmatch(figures.rstrip())
     if number is not None:
         return HandCell(float(_fraction(cell, number) * Fraction(str((LENGTHS | MASSES)[unit]))), f"{plain} {unit}")
-    # Dimensions of nothing are none there; what stands behind a 0 is its unit all the same.
-    nothing = _ZERO.match(figures)
-    read = parse(figures if nothing is None else f"1{figures[nothing.end() :]}")
+    # A text of dimensions has none of nothing, and 2/16 cm are two there: what follows the one number here is its unit.
+    alone = _ZERO.match(figures) or _BARE.match(figures)
+    read = parse(figures if alone is None else f"1{figures[alone.end() :]}")
     parts = [part for part in read.parts if part.value is not None]
     lost = read.having("remainder") or read.having("left_out") or read.having("contradiction")
     masses = unit in MASSES
@@ -176,8 +180,8 @@ def _measured(cell: str, plain: str, figures: str, unit: str) -> HandCell:
         raise InputError(f"{cell!r} is no {'mass' if masses else 'length'}")
     if part.low != part.high or part.value is None:
         raise InputError(f"{cell!r} is a range")
-    value = part.value if nothing is None else 0.0
-    return HandCell(value, plain, "approximate" in part.qualifiers, named=True)
+    times = Fraction(1) if alone is None else Fraction(alone[0].replace(" ", "").replace(",", ".").rstrip("."))
+    return HandCell(float(Fraction(str(part.value)) * times), plain, "approximate" in part.qualifiers, named=True)
 
 
 def _other(cell: str, plain: str, figures: str, unit: str) -> HandCell:
@@ -206,5 +210,7 @@ def _fraction(cell: str, found: re.Match[str]) -> Fraction:
             raise InputError(f"{cell!r} has a fraction that is no part of one")
         return int(found["whole"]) + part
     if found["c"]:
+        if int(found["c"]) >= int(found["d"]) or int(found["d"]) not in _PARTS:
+            raise InputError(f"{cell!r} may be two numbers, or a fraction that is no part of one")
         return Fraction(int(found["c"]), int(found["d"]))
     return Fraction(found["e"].replace(",", ".").rstrip("."))
