@@ -107,6 +107,17 @@ def cache_folder() -> str:
     return str(_CONFIG.CACHE_DIR)
 
 
+def is_kept(name: str) -> bool:
+    """Return whether machine code is kept of a function, so that no process need compile it.
+
+    Parameters
+    ----------
+    name : str
+        Its file and its own, such as "standing.standing_batch".
+    """
+    return any(Path(cache_folder()).glob(f"**/{name}-*.nbi"))
+
+
 class _Compilations(event.Listener):
     """Counts what is compiled: numba compiles one function at a time, whatever thread wants it."""
 

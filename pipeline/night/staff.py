@@ -1,12 +1,16 @@
 """Those who work in a run: this process, processes of this machine, or a cluster."""
 
+from collections import deque
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from concurrent.futures import CancelledError
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
+from threading import Thread
 from typing import Self
 
 from pipeline.execute.memory import give_back
 from pipeline.execute.pool import WorkerPool, cores, pool
+from pipeline.night.compiling import compile_ahead, to_compile
 from pipeline.night.context import RunContext
 from pipeline.settings import Execution
 
@@ -21,6 +25,12 @@ they end before anything is shown: what each remembers is a gigabyte."""
 
 _MODULES = ("pipeline.night.unit_tasks", "pipeline.night.page_tasks")
 """What a process that is started ahead makes ready meanwhile."""
+
+
+def _begin_compiling(workers: WorkerPool) -> None:
+    # What goes wrong in it goes wrong again where it is needed, and is said there; the run may also be over.
+    with suppress(Exception, CancelledError):
+        deque(workers.each(compile_ahead, None, [None]), maxlen=0)
 
 
 class Staff:
@@ -52,6 +62,8 @@ class Staff:
         if self._local is None:
             local = pool(processes=self._wanted.processes or cores(), modules=_MODULES)
             self._local = self._stack.enter_context(local)
+            if to_compile():
+                Thread(target=_begin_compiling, args=(self._local,), daemon=True).start()
         return self._local
 
     @contextmanager
