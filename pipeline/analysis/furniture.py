@@ -18,6 +18,8 @@ from pipeline.records import Anchorage, Estimate, Furniture, Item, Origin, Scene
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.furniture_rows import ANY, STANDING, FurnitureRow, UsualFurniture, usual_furniture
+from pipeline.tables.held_rows import words_for
+from pipeline.tables.rows import any_of
 
 FREQUENCY, DAMPING, LEVEL_ERROR = "furniture_frequency", "furniture_damping", "level_error"
 
@@ -30,15 +32,6 @@ OF_LOOSE = (HALF_WIDTH, CG_HEIGHT, FRICTION, SHELF_HEIGHT)
 
 OF_FURNITURE = (FREQUENCY, DAMPING, LEVEL_ERROR, *OF_LOOSE)
 """Parameters of a scene that follow from its furniture."""
-
-_CASES = (
-    (
-        re.compile(r"\b(pedestals?|plinths?|socles?|Sockel|Podest|socle|plinto|pedestal)\b", re.IGNORECASE),
-        Furniture.PEDESTAL,
-    ),
-    (re.compile(r"\b(shelf|shelves|Regal|étagère)\b", re.IGNORECASE), Furniture.SHELF),
-)
-"""Words by which the name of a case says that it is none; any other name is that of a showcase."""
 
 WHAT_HANGS = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what hangs from above"}
 """What is said of furniture to be usual for, where it is so for whatever hangs."""
@@ -165,7 +158,9 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
     hangs = support in (Support.HUNG, Support.SUSPENDED)
     case = item.case.strip()
     if case and not hangs:
-        kind = next((kind for words, kind in _CASES if words.search(case)), Furniture.SHOWCASE)
+        # Whatever else it is called, what things stand in is a showcase; one with a shelf in it is softer.
+        named = (kind for kind in (Furniture.PEDESTAL, Furniture.SHELF) if _named(kind).search(case))
+        kind = next(named, Furniture.SHOWCASE)
         return FurnitureGuess(kind, Origin.DERIVED, f"for its record names the case or plinth {case!r}")
     row = _usual(object_class, support.value if hangs else STANDING, item.height_m or 0.0)
     about = "what stands" if row.object_class == ANY else object_class.replace("_", " ")
@@ -173,6 +168,11 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
     about = WHAT_HANGS.get(support, about)
     words = f"assumed for: {about}{from_}, usual_furniture.csv; not recorded"
     return FurnitureGuess(row.furniture, Origin.ASSUMED, words, f"usual_furniture.csv ({row.source})")
+
+
+@cache
+def _named(kind: Furniture) -> re.Pattern[str]:
+    return any_of(words_for(kind))
 
 
 def in_furniture(scene: Scene, house: HouseEffect, values: AssumedValues) -> Scene:

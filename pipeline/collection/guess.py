@@ -42,6 +42,7 @@ from pipeline.collection.guessing.source import (
 )
 from pipeline.collection.mapping import MAPPABLE, PRESETS, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
+from pipeline.collection.places import parted
 from pipeline.collection.record import units_of
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.registry import is_address
@@ -225,6 +226,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     writer = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both, second)
     fields, used = writer.mapped(found)
     document["columns"] = fields
+    _cases_in_places(fields, [column for column in (found.get("gallery"), usual) if column is not None], told)
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")
     if wanted is not None:
@@ -281,6 +283,21 @@ def _add_misspelt(columns: Sequence[Column], able: dict[str, list[Column]], told
             told.doubts.append(
                 f"column {column.name!r} is read as {meant[1]!r}, misspelt; --choose {meant[0].field}=- leaves it out"
             )
+
+
+def _cases_in_places(fields: tomlkit.items.Table, places: Sequence[Column], told: GuessNotes) -> None:
+    """Take cases from places that name them, where no column does, and say so."""
+    if not places or "case" in fields or "case" in told.choices:
+        return
+    texts = list(dict.fromkeys(place for column in places for place in column.distinct))
+    apart = [(place, *those) for place in texts if (those := parted(place))[1]]
+    if len(apart) > 1 or len(apart) > 0.05 * len(texts):
+        fields["gallery"]["cases"] = True
+        place, room, case = next((one for one in apart if one[0] != one[1]), apart[0])
+        told.sure.append(
+            f"{len(apart)} of {len(texts)} places name a case, a plinth or a shelf: of {place[:80]!r} the gallery is "
+            f"{room[:80]!r}, the case {case[:80]!r}; --choose case=- leaves places whole"
+        )
 
 
 def _place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:

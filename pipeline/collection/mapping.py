@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Self
 
 from pydantic import (
     BaseModel,
@@ -18,14 +18,12 @@ from pydantic import (
     StrictFloat,
     StrictStr,
     ValidationError,
-    field_validator,
     model_validator,
 )
 
-from pipeline.collection.dimensions import languages
 from pipeline.collection.errors import MappingError
 from pipeline.collection.image_names import pattern_keys
-from pipeline.collection.mapping_parts import Display, Images, MappingPart
+from pipeline.collection.mapping_parts import Display, Holds, Images, MappingPart, Museum, Texts
 from pipeline.collection.record import CHOICES, KINDS, REQUIRED, units_of
 from pipeline.collection.sources.base import Name, Source, SourceSettings
 from pipeline.collection.sources.registry import SOURCES, source_named
@@ -102,13 +100,6 @@ def _of_kind(kind: Source, error: Any) -> dict[str, Any]:
     return {"type": "source", "loc": ("source", *error["loc"]), "msg": message}
 
 
-class Museum(MappingPart):
-    """Whose collection it is."""
-
-    name: Name = Field(description="The museum's name, as reports show it.")
-    credit: str = Field(default="", description="How the museum wants its data to be credited.")
-
-
 class ColumnMap(MappingPart):
     """Where one field of the record comes from."""
 
@@ -150,6 +141,11 @@ class ColumnMap(MappingPart):
         description="Cells were filled in by hand: fractions, decimal commas, another unit and words such as about are "
         "read (8 1/2, 0,3, 30 cm, about 3); a number that names no unit is in that of the column.",
     )
+    cases: bool = Field(
+        default=False,
+        description='Of the gallery: its texts name cases, plinths and shelves besides, "Gallery 1, case 3"; that part '
+        "is the case of the object, and the gallery goes without it.",
+    )
     optional: bool = Field(default=False, description="The file may lack this column.")
 
     @property
@@ -162,58 +158,6 @@ class ColumnMap(MappingPart):
         if (self.column is not None) + bool(self.columns) + (self.constant is not None) != 1:
             raise InputError('needs one of column = "name", columns = ["first", "second"] and constant = "text"')
         return self
-
-
-class Texts(MappingPart):
-    """Texts in which dimensions and weights stand, such as "8 1/2 x 11 in. (21.6 x 27.9 cm)"."""
-
-    columns: tuple[Name, ...] = Field(
-        min_length=1, description="The columns; what the first does not say is taken from the next."
-    )
-    unit: str | None = Field(
-        default=None, description="Unit of numbers that have none; without it they are reported and not used."
-    )
-    language: str = Field(
-        default="",
-        description="Language of the texts (en, fr, de, nl, it, es, pt, ro, el, tr, pl, cs, hu, ru), which settles "
-        "short labels, L. or D.; without it the words of each text do.",
-    )
-    framed: bool = Field(default=True, description="Whether works in frames hang in them: then the frame counts.")
-    optional: bool = Field(default=False, description="The source may lack these columns.")
-
-    @field_validator("unit")
-    @classmethod
-    def _known(cls, unit: str | None) -> str | None:
-        if unit is not None and unit not in LENGTHS:
-            raise InputError(f"{unit!r} is no unit of length; use one of {', '.join(LENGTHS)}")
-        return unit
-
-    @field_validator("language")
-    @classmethod
-    def _spoken(cls, language: str) -> str:
-        if language and language not in languages():
-            raise InputError(f"{language!r} is no language of dimension texts; use one of {', '.join(languages())}")
-        return language
-
-
-class Holds(MappingPart):
-    """What holds where a source contradicts itself in most rows; without it the import stops there."""
-
-    texts: Literal["columns", "texts"] | None = Field(
-        default=None, description="Columns of sizes and masses, or the texts of dimensions that say otherwise."
-    )
-    sides: Literal["mapping"] | None = Field(
-        default=None, description="Height, width and depth as mapped, although texts say that they are exchanged."
-    )
-    units: Literal["mapping"] | None = Field(
-        default=None, description="Units as mapped, although a column of units, or how the numbers are written, differ."
-    )
-    weights: Literal["mapping"] | None = Field(
-        default=None, description="Masses and their unit as mapped, although they do not fit the objects' sizes."
-    )
-    display: Literal["flag", "location"] | None = Field(
-        default=None, description="The flag, or the location that says otherwise, on whether an object is on display."
-    )
 
 
 class Mapping(MappingPart):
@@ -263,6 +207,10 @@ class Mapping(MappingPart):
             raise InputError(f'columns.{absent[0]} is missing; add it with column = "..."')
         if "image" in pattern_keys(self.images.pattern) and "image" not in self.columns:
             raise InputError("images.pattern: has {image}, and no column gives it; add [columns.image]")
+        if self.columns["gallery"].cases and "case" in self.columns:
+            raise InputError(
+                "columns.gallery: cases takes them from the place, and columns.case gives them; leave one out"
+            )
         for field, column in self.columns.items():
             fault = _fault(field, column)
             if fault:
@@ -420,6 +368,8 @@ def check_header(mapping: Mapping, file: str, header: Sequence[str]) -> None:
 
 def _fault(field: str, column: ColumnMap) -> str:
     kind, units = KINDS.get(field, "number"), units_of(field)
+    if column.cases and field != "gallery":
+        return "cases is for the column of the gallery; leave it out"
     if column.constant is not None:
         return _constant_fault(field, kind, column)
     if (column.units or column.first) and ((fault := _several_fault(kind, units, column)) or column.units):

@@ -13,7 +13,8 @@ from pipeline.collection.dimensions.choice import HANGS
 from pipeline.collection.dimensions.lexicon import unit_words
 from pipeline.collection.dimensions.parts import FRAMED
 from pipeline.collection.dimensions.structured import plain_text
-from pipeline.collection.mapping import ColumnMap, Texts
+from pipeline.collection.mapping import ColumnMap
+from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured_cell import written
 from pipeline.collection.record import TEXT_LIMIT
 from pipeline.records import Origin, Problem, Provenance

@@ -19,9 +19,11 @@ from pipeline.collection.display_words import flag_of, tells_nothing
 from pipeline.collection.errors import CollectionError, NoRowsError
 from pipeline.collection.image_names import first_of, of_pattern
 from pipeline.collection.limits import STANDARD, Limits, Meter
-from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, Texts, check_header
+from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, check_header
+from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.opening import open_source
+from pipeline.collection.places import parted
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.row_audit import RowAudit
 from pipeline.collection.source_audit import audit, judged, taken_away
@@ -433,6 +435,8 @@ class RowReader:
             remedy = "record its current location; until then it counts as not on display"
             if said is not False:  # what is not on display, as a flag says, may well have no place that is told
                 cells.problems.append(Problem("gallery", "the location is empty", remedy))
+        elif self._mapping.columns["gallery"].cases:
+            gallery, values["case"] = parted(gallery)
         photographs = self._mapping.images
         values["image"] = of_pattern(
             photographs.pattern, values["object_number"], first_of(str(values.get("image") or ""))

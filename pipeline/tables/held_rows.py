@@ -90,3 +90,19 @@ def told_by(text: str) -> HeldAs:
     return HeldAs(
         **{name: next((one for row in found if (one := getattr(row, name)) is not None), None) for name in names}
     )
+
+
+def words_for(furniture: Furniture) -> tuple[str, ...]:
+    """Return the words that tell of a thing what it stands in or on, and nothing else.
+
+    Parameters
+    ----------
+    furniture : Furniture
+        Which.
+    """
+    alone = [
+        row
+        for _, row in _rows()
+        if row.furniture is furniture and (row.support, row.hanging, row.anchorage, row.mount) == (None,) * 4
+    ]
+    return tuple(word for row in alone for word in row.words if not word.startswith("="))

@@ -12,7 +12,7 @@ import pytest
 
 from pipeline.collection.cells import Cells
 from pipeline.collection.dimensions import choose, parse
-from pipeline.collection.mapping import Texts
+from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured import fill
 from pipeline.errors import InputError
 

@@ -16,7 +16,7 @@ from pipeline.analysis.classify import classify
 from pipeline.collection.cells import Cells
 from pipeline.collection.dimensions.structured import plain_text, words_of
 from pipeline.collection.guess import guess
-from pipeline.collection.mapping import Texts
+from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured import fill
 from pipeline.collection.reading import read_items
 from pipeline.records import Item

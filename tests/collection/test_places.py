@@ -1,0 +1,81 @@
+"""A place that names a case besides its room: where it ends, what stands in it, and that a mapping must say so."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from pipeline.analysis.classify import classify
+from pipeline.collection.errors import MappingError
+from pipeline.collection.guess import guess
+from pipeline.collection.mapping import load_mapping
+from pipeline.collection.places import parted
+from pipeline.collection.reading import read_items
+from pipeline.records import Furniture, Origin
+
+
+@pytest.mark.parametrize(
+    ("place", "room", "case"),
+    [("Gallery 1, case 3", "Gallery 1", "case 3"), ("Gallery 12 Case 3", "Gallery 12", "Case 3"),
+     ("Sál 1, vitrína 2", "Sál 1", "vitrína 2"), ("Αίθουσα 5, προθήκη 2", "Αίθουσα 5", "προθήκη 2"),
+     ("Sala 3, vetrina 1", "Sala 3", "vetrina 1"), ("Gallery 6, shelf", "Gallery 6", "shelf"),
+     ("Gallery 6, left case", "Gallery 6", "left case"), ("Großer Saal, Vitrine III", "Großer Saal", "Vitrine III"),
+     ("Salle 3 > Vitrine 12 > étagère 2", "Salle 3", "Vitrine 12 > étagère 2"), ("第2展厅展柜3", "第2展厅", "展柜3"),
+     ("British Galleries, Room 58, Case 3", "British Galleries, Room 58", "Case 3"),
+     ("Grosvenor Gallery: plinth", "Grosvenor Gallery", "plinth"), ("Case 3, Gallery 1", "Gallery 1", "Case 3"),
+     ("Gallery 207 - Display case A", "Gallery 207", "Display case A"), ("Vitrine 3", "Vitrine 3", "Vitrine 3")],
+)  # fmt: skip
+def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
+    assert parted(place) == (room, case)
+
+
+@pytest.mark.parametrize(
+    "place",
+    ["", "Gallery 1", "Staircase", "Case Study House", "Bookcase Room", "The Shelf", "The Showcase", "Vitrine Gallery",
+     "Pedestal Hall", "Cabinet 3", "Kabinett 12", "G69/dc13", "Gallery 2, by the window", "Casement Hall, south"],
+)  # fmt: skip
+def test_a_room_alone(place: str) -> None:
+    assert parted(place) == (place, "")
+
+
+EXPORT = """number,object,material,size,location
+1,vase,porcelain,H 30 x W 15 x D 15 cm,"Gallery 1, case 3"
+2,vase,porcelain,H 30 x W 15 x D 15 cm,"Gallery 1, shelf 2"
+3,bust,marble,H 60 x W 40 x D 30 cm,"Gallery 1, plinth 4"
+4,bust,marble,H 60 x W 40 x D 30 cm,Gallery 1
+5,vase,porcelain,H 30 x W 15 x D 15 cm,"Store 2, shelf 14"
+"""
+
+
+def test_the_guess_says_so_and_what_stands_there_stands_in_it(tmp_path: Path) -> None:
+    export, mapping = tmp_path / "export.csv", tmp_path / "mapping.toml"
+    export.write_text(EXPORT, encoding="utf-8")
+    told = guess(export)
+    assert any("'Gallery 1, case 3' the gallery is 'Gallery 1', the case 'case 3'" in line for line in told.sure)
+    mapping.write_text(told.text, encoding="utf-8")
+    items = {item.object_number: item for item in read_items(export, load_mapping(mapping)).items}
+    assert [(items[n].gallery, items[n].case) for n in "12345"] == [
+        ("Gallery 1", "case 3"), ("Gallery 1", "shelf 2"), ("Gallery 1", "plinth 4"), ("Gallery 1", ""),
+        ("Store 2", "shelf 14"),
+    ]  # fmt: skip
+    # A store is told by the whole place.
+    assert [items[n].on_display for n in "12345"] == [True, True, True, True, False]
+    found = [classify(items[n]) for n in "1234"]
+    assert [scene.furniture for scene in found[:3]] == [Furniture.SHOWCASE, Furniture.SHELF, Furniture.PEDESTAL]
+    assert [scene.furniture_origin for scene in found] == [Origin.DERIVED] * 3 + [Origin.ASSUMED]
+    whole = guess(export, choices={"case": "-"})
+    assert "cases" not in whole.text
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [("cases = true", 'cases = true\n[columns.case]\ncolumn = "object"', "leave one out"),
+     ("cases = true", '[columns.title]\ncolumn = "object"\ncases = true', "for the column of the gallery")],
+)  # fmt: skip
+def test_a_mapping_that_contradicts_itself_is_refused(tmp_path: Path, before: str, after: str, words: str) -> None:
+    export, mapping = tmp_path / "export.csv", tmp_path / "mapping.toml"
+    export.write_text(EXPORT, encoding="utf-8")
+    mapping.write_text(guess(export).text.replace(before, after), encoding="utf-8")
+    with pytest.raises(MappingError, match=words):
+        load_mapping(mapping)
