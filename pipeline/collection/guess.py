@@ -290,13 +290,14 @@ def _cases_in_places(fields: tomlkit.items.Table, places: Sequence[Column], told
     if not places or "case" in fields or "case" in told.choices:
         return
     texts = list(dict.fromkeys(place for column in places for place in column.distinct))
-    apart = [(place, *those) for place in texts if (those := parted(place))[1]]
+    apart = [(text, place) for text in texts if any((place := parted(text))[1:])]
     if len(apart) > 1 or len(apart) > 0.05 * len(texts):
         fields["gallery"]["cases"] = True
-        place, room, case = next((one for one in apart if one[0] != one[1]), apart[0])
+        text, place = next((one for one in apart if one[0] != one[1].room), apart[0])
         told.sure.append(
-            f"{len(apart)} of {len(texts)} places name a case, a plinth or a shelf: of {place[:80]!r} the gallery is "
-            f"{room[:80]!r}, the case {case[:80]!r}; --choose case=- leaves places whole"
+            f"{len(apart)} of {len(texts)} places name a case, a plinth, a shelf or how things are held: of "
+            f"{text[:80]!r} the gallery is {place.room[:80]!r}, the rest {(place.case or place.displayed)[:80]!r}; --choose case=- "
+            "leaves places whole"
         )
 
 

@@ -143,8 +143,8 @@ class ColumnMap(MappingPart):
     )
     cases: bool = Field(
         default=False,
-        description='Of the gallery: its texts name cases, plinths and shelves besides, "Gallery 1, case 3"; that part '
-        "is the case of the object, and the gallery goes without it.",
+        description='Of the gallery: its texts name cases, plinths and shelves besides, "Gallery 1, case 3", or how a '
+        'thing is held, "Atrium, hung overhead"; that part tells it, and the gallery goes without.',
     )
     optional: bool = Field(default=False, description="The file may lack this column.")
 

@@ -2,9 +2,10 @@
 
 import re
 from functools import cache
+from typing import NamedTuple
 
 from pipeline.records import Furniture
-from pipeline.tables.held_rows import words_for
+from pipeline.tables.held_rows import told_by, words_for
 from pipeline.tables.rows import any_of
 
 _SEPARATOR = re.compile(r"\s*[,;/>|]\s*|:\s+|\s+[-–—]\s+")
@@ -14,35 +15,47 @@ _NUMBERED = ("case", "cases", "Schrank", "kast")
 """Words that name furniture only where a number follows."""
 
 
-def parted(place: str) -> tuple[str, str]:
-    """Return the room of a place, and the case, plinth or shelf that it names besides; "" where it names none.
+class Place(NamedTuple):
+    """What a place names: a room, a case, plinth or shelf in it, how a thing is held there; "" for what it does not."""
+
+    room: str
+    case: str = ""
+    displayed: str = ""
+
+
+def parted(text: str) -> Place:
+    """Return what a place names.
 
     Parameters
     ----------
-    place : str
-        As the museum writes it.
-
-    Returns
-    -------
-    (str, str)
-        A place that names a case and no room is both: "Vitrine 3".
+    text : str
+        As the museum writes it: "Gallery 1, case 3", "Atrium, suspended from the ceiling". One that names a case and no
+        room, "Vitrine 3", is both.
     """
-    ends = [found.span() for found in _SEPARATOR.finditer(place)]
-    spans = list(zip((0, *(end for _, end in ends)), (*(start for start, _ in ends), len(place)), strict=True))
+    ends = [found.span() for found in _SEPARATOR.finditer(text)]
+    spans = list(zip((0, *(end for _, end in ends)), (*(start for start, _ in ends), len(text)), strict=True))
     whole, numbered, inside = _patterns()
-    named = [bool(whole.match(place[start:end])) for start, end in spans]
-    if not any(named):
-        found = inside.search(place)
-        room = place[: found.start()].rstrip() if found else ""
-        return (room, place[len(room) :].strip()) if room else (place, "")
-    first = named.index(True)
-    if first:
-        return place[: spans[first - 1][1]], place[spans[first][0] :]
-    room_at = named.index(False) if not all(named) else 0
-    if room_at:
-        # "Case 3, Gallery 1": the other way round.
-        return place[spans[room_at][0] :], place[: spans[room_at - 1][1]]
-    return (place, place) if len(spans) > 1 or numbered.match(place) else (place, "")
+    cases = [bool(whole.match(text[start:end])) for start, end in spans]
+    if any(cases):
+        first = cases.index(True)
+        if first:
+            return Place(text[: spans[first - 1][1]], text[spans[first][0] :])
+        if not all(cases):
+            # "Case 3, Gallery 1": the other way round.
+            room = cases.index(False)
+            return Place(text[spans[room][0] :], text[: spans[room - 1][1]])
+        return Place(text, text if len(spans) > 1 or numbered.match(text) else "")
+    held = next((at for at, (start, end) in enumerate(spans) if at and _tells(text[start:end])), 0)
+    if held:
+        return Place(text[: spans[held - 1][1]], displayed=text[spans[held][0] :])
+    found = inside.search(text)
+    room_alone = text[: found.start()].rstrip() if found else ""
+    return Place(room_alone, text[len(room_alone) :].strip()) if room_alone else Place(text)
+
+
+def _tells(piece: str) -> bool:
+    told = told_by(piece)
+    return told.support is not None or told.furniture is not None
 
 
 @cache

@@ -436,7 +436,8 @@ class RowReader:
             if said is not False:  # what is not on display, as a flag says, may well have no place that is told
                 cells.problems.append(Problem("gallery", "the location is empty", remedy))
         elif self._mapping.columns["gallery"].cases:
-            gallery, values["case"] = parted(gallery)
+            gallery, values["case"], held = parted(gallery)
+            values["displayed"] = "; ".join(filter(None, (values.get("displayed"), held)))
         photographs = self._mapping.images
         values["image"] = of_pattern(
             photographs.pattern, values["object_number"], first_of(str(values.get("image") or ""))

@@ -12,7 +12,7 @@ from pipeline.collection.guess import guess
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.places import parted
 from pipeline.collection.reading import read_items
-from pipeline.records import Furniture, Origin
+from pipeline.records import Furniture, Origin, Support
 
 
 @pytest.mark.parametrize(
@@ -27,7 +27,7 @@ from pipeline.records import Furniture, Origin
      ("Gallery 207 - Display case A", "Gallery 207", "Display case A"), ("Vitrine 3", "Vitrine 3", "Vitrine 3")],
 )  # fmt: skip
 def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
-    assert parted(place) == (room, case)
+    assert parted(place) == (room, case, "")
 
 
 @pytest.mark.parametrize(
@@ -36,7 +36,17 @@ def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
      "Pedestal Hall", "Cabinet 3", "Kabinett 12", "G69/dc13", "Gallery 2, by the window", "Casement Hall, south"],
 )  # fmt: skip
 def test_a_room_alone(place: str) -> None:
-    assert parted(place) == (place, "")
+    assert parted(place) == (place, "", "")
+
+
+@pytest.mark.parametrize(
+    ("place", "room", "displayed"),
+    [("Engine Hall, suspended from ceiling", "Engine Hall", "suspended from ceiling"),
+     ("Saal 4, an der Wand", "Saal 4", "an der Wand"), ("Gallery 2 - on floor", "Gallery 2", "on floor"),
+     ("Atrium; hung overhead", "Atrium", "hung overhead")],
+)  # fmt: skip
+def test_a_room_and_how_a_thing_is_held_there(place: str, room: str, displayed: str) -> None:
+    assert parted(place) == (room, "", displayed)
 
 
 EXPORT = """number,object,material,size,location
@@ -45,6 +55,7 @@ EXPORT = """number,object,material,size,location
 3,bust,marble,H 60 x W 40 x D 30 cm,"Gallery 1, plinth 4"
 4,bust,marble,H 60 x W 40 x D 30 cm,Gallery 1
 5,vase,porcelain,H 30 x W 15 x D 15 cm,"Store 2, shelf 14"
+6,glider,wood,H 60 x W 300 x D 200 cm,"Gallery 2, suspended from the ceiling"
 """
 
 
@@ -52,13 +63,22 @@ def test_the_guess_says_so_and_what_stands_there_stands_in_it(tmp_path: Path) ->
     export, mapping = tmp_path / "export.csv", tmp_path / "mapping.toml"
     export.write_text(EXPORT, encoding="utf-8")
     told = guess(export)
-    assert any("'Gallery 1, case 3' the gallery is 'Gallery 1', the case 'case 3'" in line for line in told.sure)
+    assert any("'Gallery 1, case 3' the gallery is 'Gallery 1', the rest 'case 3'" in line for line in told.sure)
     mapping.write_text(told.text, encoding="utf-8")
     items = {item.object_number: item for item in read_items(export, load_mapping(mapping)).items}
     assert [(items[n].gallery, items[n].case) for n in "12345"] == [
-        ("Gallery 1", "case 3"), ("Gallery 1", "shelf 2"), ("Gallery 1", "plinth 4"), ("Gallery 1", ""),
+        ("Gallery 1", "case 3"),
+        ("Gallery 1", "shelf 2"),
+        ("Gallery 1", "plinth 4"),
+        ("Gallery 1", ""),
         ("Store 2", "shelf 14"),
-    ]  # fmt: skip
+    ]
+    assert (items["6"].gallery, items["6"].case, items["6"].displayed) == (
+        "Gallery 2",
+        "",
+        "suspended from the ceiling",
+    )
+    assert classify(items["6"]).support is Support.SUSPENDED  # fmt: skip
     # A store is told by the whole place.
     assert [items[n].on_display for n in "12345"] == [True, True, True, True, False]
     found = [classify(items[n]) for n in "1234"]
