@@ -294,10 +294,10 @@ def _cases_in_places(fields: tomlkit.items.Table, places: Sequence[Column], told
     if len(apart) > 1 or len(apart) > 0.05 * len(texts):
         fields["gallery"]["cases"] = True
         text, place = next((one for one in apart if one[0] != one[1].room), apart[0])
-        rest = place.case or place.displayed
+        room, rest = place.room[:80], (place.case or place.displayed)[:80]
         told.sure.append(
             f"{len(apart)} of {len(texts)} places name a case, a plinth, a shelf or how things are held: of "
-            f"{text[:80]!r} the gallery is {place.room[:80]!r}, the rest {rest[:80]!r}; --choose case=- leaves places whole"
+            f"{text[:80]!r} the gallery is {room!r}, the rest {rest!r}; --choose case=- leaves places whole"
         )
 
 
