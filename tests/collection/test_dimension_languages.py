@@ -114,6 +114,12 @@ def test_a_label_that_two_languages_read_otherwise_is_told():
         ("H. 1 m 20", [1.2]),
         ("3 m 5 x 2", [3.0]),
         ("MISU: mm; MISA: 235", [0.235]),
+        ("1 m 20 de haut sur 60 cm de large", [1.2, 0.6]),
+        ("1 250 x 800 mm", [1.25, 0.8]),
+        ("H. 1 250 mm", [1.25]),
+        ("Vase 1 250 mm", [0.25]),
+        ("[H] 45 [W] 20 [D] 18 cm", [0.45, 0.2, 0.18]),
+        ("45+ x 20 cm", [0.45, 0.2]),
     ],
 )
 def test_units_before_their_numbers(text, values):
@@ -173,3 +179,23 @@ def test_full_width_characters_and_cedillas_keep_their_places():
     (part,) = parse(text).parts
     assert (part.value, text[part.start : part.end]) == (0.125, "１２．５ｃｍ")
     assert [p.dimension for p in parse("înălţime 3 cm, lăţime 2 cm").parts] == ["height", "width"]
+
+
+@pytest.mark.parametrize(
+    ("text", "height", "width"),
+    [
+        ("H. 45 cm, with cover 53 cm", 0.53, None),
+        ("H. 45 cm (with stand 52 cm)", 0.52, None),
+        ("diameter 46 cm; height with stand 110 cm", 1.1, 0.46),
+        ("a: 45 x 20 x 18 cm; b: 44 x 20 x 18 cm", 0.45, 0.2),
+        ("Height 30 cm, greatest diameter 25 cm, diameter at lip 12 cm", 0.3, 0.25),
+        # A bowl is widest at its mouth, a jar is not.
+        ("Diameter: 12 cm (rim), Height: 8.4 cm", 0.084, 0.12),
+        ("Diameter: 12 cm (rim), Height: 28.4 cm", 0.284, None),
+        ("H. 30.2, diam. of mouth 18.4, diam. of foot 10 cm", 0.302, None),
+    ],
+)
+def test_what_a_thing_stands_with_and_where_it_is_widest(text, height, width):
+    values, _ = read(text)
+    assert values.get("height_m") == pytest.approx(height, rel=1e-12)
+    assert values.get("width_m") == (None if width is None else pytest.approx(width, rel=1e-12))

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from math import hypot, pi
 
-from pipeline.collection.dimensions.parts import DETAILS, FRAMED, is_base, is_detail
+from pipeline.collection.dimensions.parts import DETAILS, FRAMED, MOUTHS, is_base, is_detail
 from pipeline.collection.dimensions.result import Choice, Chosen, DimensionPart, Dimensions
 from pipeline.quantities import figures
 
 _FACES = {"mount": 4, "mat": 4, "sheet": 5, "page": 5, "image": 6, "composition": 6, "plate": 6, "block": 6}
 HANGS = "framed, as it hangs"
 """How the reason ends of what is said of a frame that counts."""
+_RAISING = frozenset({"stand", "cover", "finial", "plinth", "pedestal", "halo", "crown"})
+"""What a thing stands with: "H. 45 cm, with cover 53 cm"."""
 _LAST = 9
 _LABELLED = frozenset({"height", "width", "depth", "diameter", "length", "thickness", "weight"})
 _SAME_HEIGHT = 0.1
 """Difference of two heights up to which both are the thing's, with and without a finial or a foot."""
+_OPEN = 1.0
+"""Diameter of a mouth over the height from which a vessel is a bowl, and its mouth the widest of it."""
 _FLAT = 0.5
 """First number of a base over its second from which both lie in plan; below it the first is the base's own height."""
 
@@ -72,6 +77,8 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
             one for g in bodies if g[0].name == "figure" and "height" in (one := _extents(g, _reason(g, 1, False)))
         ]
         out |= {"height": max((one["height"] for one in figures), key=lambda one: one.value)} if figures else {}
+    if "height" in out and not {"width", "depth", "diameter"} & out.keys():
+        out |= _open_mouth(groups.values(), out["height"].value)
     bases = [g for g in groups.values() if is_base(g[0].name)]
     if bases:
         out |= _base(max(bases, key=_size))
@@ -134,7 +141,7 @@ def _rank(group: list[DimensionPart], hung: bool) -> int:
         return 6
     if FRAMED.intersection(words):
         return 0 if hung else 3
-    if name == "with base" or (name.startswith("with ") and DETAILS.intersection(words)):
+    if name == "with base" or (name.startswith("with ") and (DETAILS | _RAISING).intersection(words)):
         return 1
     if is_detail(name):
         return _LAST
@@ -191,6 +198,18 @@ def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
         if largest is not None:
             take("height", largest, "a number without a label, taken as the height")
     return out
+
+
+def _open_mouth(groups: Iterable[list[DimensionPart]], height: float) -> dict[str, Choice]:
+    """Return the diameter of a mouth as that of a bowl, which is widest there; none of what is higher than wide."""
+    mouths = [p for g in groups if MOUTHS.intersection(g[0].name.split()) for p in g if p.dimension == "diameter"]
+    wide = [p for p in mouths if p.value is not None and p.value >= _OPEN * height]
+    if not wide:
+        return {}
+    part = max(wide, key=lambda p: p.value or 0.0)
+    return {
+        "diameter": Choice(part.value or 0.0, part.start, part.end, "diameter of its mouth, where a bowl is widest")
+    }
 
 
 def _base(group: list[DimensionPart]) -> dict[str, Choice]:

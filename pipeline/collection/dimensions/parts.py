@@ -8,6 +8,7 @@ DETAILS = frozenset(
 )
 BASES = frozenset({"base", "foot", "feet", "plinth", "pedestal", "bottom"})
 ROUND = frozenset({"foot", "rim", "mouth", "neck", "opening"})
+MOUTHS = frozenset({"rim", "mouth"})
 _HOLLOW = "inside"
 _SENTENCE = 6
 """Words beyond which what stands before numbers is no name: "net dimensions exclude lid, stand and mouldings"."""

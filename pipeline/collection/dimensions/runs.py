@@ -147,7 +147,7 @@ def _smaller(tokens: list[Token], at: int, larger: DimensionQuantity) -> tuple[D
             and not comma
             and number.den == 1
             and _is_pair(number)
-            and tokens[behind].type in _ENDS
+            and (tokens[behind].type in _ENDS or tokens[behind].word in _OF)
         ):
             out.unit = units()["cm"]  # 1 m 20
             return out, behind

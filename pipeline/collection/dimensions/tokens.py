@@ -70,7 +70,18 @@ _SAME_LENGTH = (
     # What is measured so is the whole, and no handle: W. handle to handle 12 in.
     (re.compile(r"(?i)\bhandle to handle\b"), "across across   "),
     (re.compile(r"(?i)\bhandle to spout\b"), "across across  "),
+    (re.compile(r"(?<=\d)\+(?=\s*(?:[x×]|[cm]m\b|in\b|$))"), " "),  # 45+ x 20 cm: what is left of it
 )
+_LABELS_IN_BRACKETS = re.compile(r"\A\s*[\[(][^\W\d_]{1,10}\.?[\])]\s*\d")
+"""A text that begins so, "[H] 45 [W] 20 cm", has each label before its number."""
+_IN_BRACKETS = re.compile(r"[\[(]([^\W\d_]{1,10}\.?)[\])](?=\s*\d)")
+_LISTED = re.compile(r"(?:\A|(?<=[;\n]))(\s*)\(?([a-h])[:.)](?=\s*\d+(?:[.,]\d+)?\s*[x×])", re.IGNORECASE)
+"""What a list of things begins an entry with: "a: 45 x 20 cm; b: 44 x 20 cm"."""
+_THOUSANDS = re.compile(
+    rf"(?<![\d.,/'’])([1-9]\d?){_BLANK}(\d{{3}})"
+    rf"(?=(?:[.,]\d+)?(?:\s*[x×]\s*[\d.,]+(?:{_BLANK}\d{{3}})?){{0,2}}\s*(?:mm|kg|g)\b)"
+)
+"""1 250 x 800 mm; behind a word that is no label, "vase 1 250 mm", it is two numbers."""
 _SIZE = r"\d{1,4}(?:[.,]\d{1,2})?"
 _SLASHED = re.compile(
     rf"(?<![\d/.,])(?<!\d{_BLANK}){_SIZE}(?:{_BLANK}?/{_BLANK}?{_SIZE}){{1,3}}"
@@ -184,7 +195,19 @@ def _plain(text: str) -> str:
     text = text.translate(_ALIKE)
     for pattern, words in _SAME_LENGTH:
         text = pattern.sub(words, text)
+    if _LABELS_IN_BRACKETS.match(text):
+        text = _IN_BRACKETS.sub(lambda found: f" {found[1]} ", text)
+    if (listed := [found[2].lower() for found in _LISTED.finditer(text)]) and listed == list("abcdefgh"[: len(listed)]):
+        text = _LISTED.sub(lambda found: " " * len(found[0]), text) if len(listed) > 1 else text
+    text = _THOUSANDS.sub(_joined, text)
     return _SLASHED.sub(_parted, text) if "/" in text else text
+
+
+def _joined(parted: re.Match[str]) -> str:
+    """Return thousands without their blank, as long as before."""
+    before = re.search(r"([^\W\d_]+)[.:\s]*\Z", parted.string[: parted.start()])
+    label = before is None or _is_side(before[1].lower()) or before[1].lower() in ("x", "weight", "gewicht", "poids")
+    return f" {parted[1]}{parted[2]}" if label else str(parted[0])
 
 
 def _parted(slashed: re.Match[str]) -> str:
