@@ -166,7 +166,8 @@ def _in_words(item: Item) -> str:
     size = " x ".join(f"{name} {figures(100.0 * value, 4)}" for name, value in sides if value is not None)
     mass = "" if item.mass_kg is None else f", {figures(item.mass_kg, 3)} kg"
     what = " ".join(filter(None, (item.object_name, f"{item.title[:50]!r}", item.medium[:40])))
-    return f"{item.object_number} | {item.gallery} | {what} | {f'{size} cm' if size else 'no size'}{mass}"
+    place = ", ".join(filter(None, [item.gallery, item.case if item.case != item.gallery else "", item.displayed]))
+    return f"{item.object_number} | {place} | {what} | {f'{size} cm' if size else 'no size'}{mass}"
 
 
 def source_of(workspace: Workspace, source: str) -> str:
