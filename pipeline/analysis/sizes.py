@@ -47,8 +47,10 @@ def ratio_of(row: ObjectClass, size: str, known: Mapping[str, float]) -> Estimat
     """
     # Of what lies or is held by a mount the size that nobody recorded is how thick it is.
     of = {min(known, key=known.__getitem__)} if WHEN_HELD in row.models and known else known.keys()
-    for one in proportions().get((row.name, size), ()):
-        if one.of in of and len(known) >= one.known:
+    able = [p for p in proportions().get((row.name, size), ()) if p.of in of and p.above <= known[p.of]]
+    for one in able:
+        last = max(p.above for p in able if p.of == one.of)
+        if one.above == last and len(known) >= one.known:
             best, low, high = (times * known[one.of] for times in (one.value, one.low, one.high))
             note = say.SIZE(size=size, share=one, of=one.of, told=row.told)
             return Estimate.assumed(best, low, high, "m", note, f"proportions.csv ({one.source})")

@@ -22,6 +22,8 @@ class Proportion(RangeRow):
         Row of classes.csv.
     size, of : str
         Which size, and of which it is a multiple.
+    above : float
+        From which length [m] of the latter on: what is tall is more slender than what is small.
     known : int
         How many sizes have to be recorded for it to be assumed.
     value, low, high, source
@@ -32,6 +34,7 @@ class Proportion(RangeRow):
     size: Size
     of: Size
     low: Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+    above: Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
     known: Annotated[int, Field(ge=1, le=2)]
 
 
@@ -51,10 +54,10 @@ def proportions() -> dict[tuple[str, str], tuple[Proportion, ...]]:
     for line, row in enumerate(rows, start=2):
         if row.name not in assumed().classes:
             raise TableError(f"proportions.csv, line {line}: classes.csv has no class {row.name!r}; correct it")
-        if row.size == row.of or (row.name, row.size, row.of) in seen:
+        if row.size == row.of or (row.name, row.size, row.of, row.above) in seen:
             raise TableError(
                 f"proportions.csv, line {line}: {row.size} of {row.of} is there twice or is of itself; keep one"
             )
-        seen.add((row.name, row.size, row.of))
+        seen.add((row.name, row.size, row.of, row.above))
         out.setdefault((row.name, row.size), []).append(row)
     return {key: tuple(sorted(some, key=lambda row: row.high / row.low)) for key, some in out.items()}

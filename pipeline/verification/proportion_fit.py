@@ -11,7 +11,7 @@ import csv
 import sys
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import permutations
+from itertools import pairwise, permutations
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +20,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.sizes import SIZES, ratio_of, sizes_known
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
-from pipeline.records import Item
+from pipeline.records import Item, Support
 from pipeline.tables.assumed import assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD
 
@@ -38,7 +38,10 @@ WIDER = 1.5
 
 PERCENTILES = (5.0, 50.0, 95.0)
 
-COLUMNS = ("class", "size", "of", "low", "value", "high", "known", "source")
+TALL = {0.3: "from 0.3 to 1 m high", 1.0: "from 1 m high on"}
+"""Heights [m] from which what stands has proportions of its own, and how they are told: tall things are slender."""
+
+COLUMNS = ("class", "size", "of", "above", "low", "value", "high", "known", "source")
 
 Ratios = Mapping[str, Sequence[tuple[float, float, float]]]
 """By class, height, width and depth of its objects [m]."""
@@ -99,6 +102,7 @@ def rows_of(sizes: Ratios, where: str) -> list[dict[str, str]]:
                     "class": name,
                     "size": size,
                     "of": of,
+                    "above": "0",
                     "low": f"{low:.3g}",
                     "value": f"{value:.3g}",
                     "high": f"{high:.3g}",
@@ -106,6 +110,38 @@ def rows_of(sizes: Ratios, where: str) -> list[dict[str, str]]:
                     "source": source,
                 }
             )
+    return out
+
+
+def tall_rows_of(sizes: Ratios, where: str) -> list[dict[str, str]]:
+    """Return the rows of what stands and is tall, of classes of which there are enough such objects.
+
+    Parameters
+    ----------
+    sizes, where : mapping, str
+        As of `rows_of`, of several museums together, as one has few of these.
+
+    Returns
+    -------
+    list of dict
+        Width and depth over height, by class and by the heights of `TALL`.
+    """
+    out = []
+    steps = (*TALL, float("inf"))
+    for name, row in assumed().classes.items():
+        if NO_MODEL in row.models or WHEN_HELD in row.models or row.support is not Support.FREESTANDING:
+            continue
+        some = np.array(sizes.get(name, ())).reshape(-1, 3)
+        for above, below in pairwise(steps):
+            tall = some[(some[:, 0] >= above) & (some[:, 0] < below)]
+            if len(tall) < ENOUGH:
+                continue
+            for at, size in enumerate(SIZES[1:], start=1):
+                low, value, high = (f"{one:.3g}" for one in np.percentile(tall[:, at] / tall[:, 0], PERCENTILES))
+                source = f"{where}: 5th, 50th and 95th percentile of {len(tall)} records {TALL[above]}"
+                known = "2" if name in LOOSE else "1"
+                values = (name, size, SIZES[0], f"{above:g}", low, value, high, known, source)
+                out.append(dict(zip(COLUMNS, values, strict=True)))
     return out
 
 
@@ -128,17 +164,22 @@ def inside(items: Iterable[Item]) -> dict[str, tuple[int, int]]:
 
 
 def main() -> None:
-    """Write the table from a museum's file and the mapping that reads it; of a second pair tell how well it fits."""
-    path, mapping, where, *other = sys.argv[1:]
+    """Write the table from a museum's file and the mapping that reads it, in the words of a source.
+
+    What is tall is of all files and mappings that follow, with the words of their source before them.
+    """
+    path, mapping, where, *tall = sys.argv[1:]
     writer = csv.DictWriter(sys.stdout, COLUMNS, lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows_of(sizes_by_class(read_items(Path(path), load_mapping(mapping)).items), where))
-    for name, (tried, right) in inside(_items(other)).items():
-        sys.stderr.write(f"{name:16} {right:6} of {tried:6} {right / tried:.0%}\n")
+    writer.writerows(rows_of(sizes_by_class(_items(path, mapping)), where))
+    if tall:
+        words, *files = tall
+        items = [item for file, reads in zip(files[::2], files[1::2], strict=True) for item in _items(file, reads)]
+        writer.writerows(tall_rows_of(sizes_by_class(items), words))
 
 
-def _items(given: Sequence[str]) -> Sequence[Item]:
-    return read_items(Path(given[0]), load_mapping(given[1])).items if given else ()
+def _items(path: str, mapping: str) -> Sequence[Item]:
+    return read_items(Path(path), load_mapping(mapping)).items
 
 
 if __name__ == "__main__":

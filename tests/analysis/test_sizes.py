@@ -20,9 +20,9 @@ VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="p
 ENDS = ("low", "value", "high")
 
 
-def ratio(object_class: str, size: str, of: str) -> tuple[float, ...]:
+def ratio(object_class: str, size: str, of: str, above: str = "0") -> tuple[float, ...]:
     rows = table("proportions")
-    row = next(r for r in rows if (r["class"], r["size"], r["of"]) == (object_class, size, of))
+    row = next(r for r in rows if (r["class"], r["size"], r["of"], r["above"]) == (object_class, size, of, above))
     return tuple(float(row[end]) for end in ENDS)
 
 
@@ -46,7 +46,7 @@ def test_a_vase_without_a_width_is_as_wide_as_vases_are() -> None:
     assert (scene.object_class, scene.missing) == ("vessel", ())
     row, bears = class_row("vessel"), bearing_of(VASE, "vessel")
     assert bears is not None
-    wide = ratio("vessel", "width", "height")
+    wide = ratio("vessel", "width", "height", "0.3")
     assert ends(scene.parameters["width"]) == pytest.approx([0.4 * one for one in wide])
     assert scene.parameters["width"].origin is Origin.ASSUMED
     assert any(text.startswith("width not recorded") for text in scene.assumptions)
@@ -126,6 +126,13 @@ def test_a_size_that_nobody_recorded_is_asked_for_in_place_of_what_hangs_on_it()
     assert [request.low, request.best, request.high] == pytest.approx(ends(classify(VASE).parameters["width"]))
     # Of what is recorded the footing is asked for, as before.
     assert asked(classify(replace(VASE, width_m=0.2)), "half_width") == ["tilt_angle_deg"]
+
+
+def test_what_is_tall_is_more_slender_than_what_is_small() -> None:
+    for item in (VASE, Item("2", "G", object_name="Longcase clock"), Item("3", "G", object_name="Cabinet")):
+        small, tall = (classify(replace(item, height_m=high)).parameters["width"] for high in (0.2, 1.8))
+        assert tall.value / 1.8 < 0.7 * small.value / 0.2, item.object_name
+        assert small.low < small.value < small.high
 
 
 def test_every_class_that_is_modelled_has_proportions_of_every_pair() -> None:

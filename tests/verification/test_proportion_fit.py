@@ -7,7 +7,7 @@ from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection
 from pipeline.records import Item
-from pipeline.verification.proportion_fit import COLUMNS, LIKE, WIDER, inside, rows_of, sizes_by_class
+from pipeline.verification.proportion_fit import COLUMNS, LIKE, WIDER, inside, rows_of, sizes_by_class, tall_rows_of
 
 WIDTHS = np.linspace(0.1, 0.3, 101)
 
@@ -43,6 +43,16 @@ def test_rows_are_the_percentiles_of_an_even_spread() -> None:
     # What lies lacks its thickness: the smallest size over the next, whichever it is.
     (thick,) = [r for r in rows if (r["class"], r["size"], r["of"]) == ("small_flat", "height", "width")]
     assert float(thick["value"]) == pytest.approx(1.0)
+
+
+def test_what_is_tall_has_rows_of_its_own_where_there_are_enough_of_it() -> None:
+    heights = np.r_[np.full(30, 0.2), np.full(25, 0.5), np.full(10, 2.0)]
+    sizes = {"vessel": [(h, 0.4 * h if h > 0.3 else h, 0.3 * h) for h in heights.tolist()]}
+    found = tall_rows_of(sizes, "somewhere")
+    assert [(r["class"], r["size"], r["of"], r["above"], r["value"]) for r in found] == [
+        ("vessel", "width", "height", "0.3", "0.4"), ("vessel", "depth", "height", "0.3", "0.3")
+    ]  # fmt: skip
+    assert all(tuple(row) == COLUMNS and "of 25 records from 0.3 to 1 m high" in row["source"] for row in found)
 
 
 def test_hidden_sizes_of_the_demonstration_lie_within_nine_times_in_ten() -> None:
