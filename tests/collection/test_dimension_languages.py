@@ -189,6 +189,9 @@ def test_full_width_characters_and_cedillas_keep_their_places():
         ("diameter 46 cm; height with stand 110 cm", 1.1, 0.46),
         ("a: 45 x 20 x 18 cm; b: 44 x 20 x 18 cm", 0.45, 0.2),
         ("Height 30 cm, greatest diameter 25 cm, diameter at lip 12 cm", 0.3, 0.25),
+        ("H 180 cm, 60 x 50 cm", 1.8, 0.6),
+        ("60 x 50 cm, H 180 cm", 1.8, 0.6),
+        ("Height: 45 cm; 45 x 20 cm", 0.45, 0.2),
         # A bowl is widest at its mouth, a jar is not.
         ("Diameter: 12 cm (rim), Height: 8.4 cm", 0.084, 0.12),
         ("Diameter: 12 cm (rim), Height: 28.4 cm", 0.284, None),

@@ -49,6 +49,7 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     for part in dimensions.parts:
         if part.value is not None and part.value > 0.0:
             groups.setdefault(part.group, []).append(part)
+    groups = {at: _in_plan(group) for at, group in groups.items()}
     bodies = [g for g in groups.values() if not is_base(g[0].name) and any(p.dimension != "weight" for p in g)]
     out: dict[str, Choice] = {}
     chosen: list[DimensionPart] = []
@@ -71,6 +72,8 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
             whole = [g for g in alike if g[0].name == chosen[0].name and _has_height(g, out["height"].value)]
             sides = max((_extents(g, _reason(g, 1, False)) for g in whole), key=len, default=out)
             out = sides | out
+            if len(out) == 1:
+                out |= _plan_beside(alike, chosen)
     if "height" not in out:
         # A figure's height beside the width over its knees, each a group of its own.
         figures = [
@@ -92,6 +95,29 @@ def _has_height(group: list[DimensionPart], height: float) -> bool:
     """Whether a group says nearly the same height, and other sides beside it."""
     said = next((p.value for p in group if p.dimension == "height" and p.value), None)
     return said is not None and len(group) > 1 and abs(said / height - 1.0) <= _SAME_HEIGHT
+
+
+def _in_plan(group: list[DimensionPart]) -> list[DimensionPart]:
+    """Return a group in which two bare numbers beside a labelled height lie in plan: "60 x 50 cm, H. 180 cm"."""
+    bare = [p for p in group if p.assumed]
+    labelled = {p.dimension: p.value for p in group if not p.assumed and p.dimension in _LABELLED - {"weight"}}
+    high = labelled.get("height")
+    if len(bare) != 2 or set(labelled) != {"height"} or not high or _has_height(bare, high):
+        return group
+    turned = {id(part): side for part, side in zip(bare, ("width", "depth"), strict=True)}
+    return [replace(p, dimension=turned[id(p)], assumed=False) if id(p) in turned else p for p in group]
+
+
+def _plan_beside(alike: list[list[DimensionPart]], upright: list[DimensionPart]) -> dict[str, Choice]:
+    """Return width and depth of two numbers without labels beside a labelled height: "H. 180 cm, 60 x 50 cm"."""
+    pairs = [g for g in alike if len(g) == 2 and all(p.assumed for p in g) and g[0].name == upright[0].name]
+    if len(pairs) != 1 or upright[0].assumed:
+        return {}
+    how = "beside a height with a label, and so in plan"
+    return {
+        side: Choice(part.value or 0.0, part.start, part.end, f"{side}, {how}")
+        for side, part in zip(("width", "depth"), pairs[0], strict=True)
+    }
 
 
 def _telling(alike: list[list[DimensionPart]]) -> list[list[DimensionPart]]:
