@@ -25,7 +25,10 @@ from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin,
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, ObjectClass
-from pipeline.tables.body_rows import PAIR, BodyRow
+from pipeline.tables.body_rows import PAIR, STACK, BodyRow
+
+_AS_ONE = {PAIR: say.TWO_BODIES, STACK: say.STACKED}
+"""What is said of bodies that are several and are followed as one."""
 
 FIXED = "fixed-post:"
 """How the reason of a class begins by whose rule a thing stands fixed in a footing."""
@@ -155,8 +158,8 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         if stance.taken.support is not None:
             phrase = say.SUPPORT_FIXED(support=support.value)
         assumptions.insert(0, f"{phrase}; {say.NOT_RECORDED()}")
-    if shape is not None and shape.body == PAIR:
-        assumptions.insert(0, say.TWO_BODIES())
+    if shape is not None and shape.body in _AS_ONE:
+        assumptions.insert(0, _AS_ONE[shape.body]())
     told = tuple(dict.fromkeys((*display_note(item, support), *assumptions)))
     scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)

@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache, cached_property, lru_cache
-from math import radians, tan
+from math import exp, hypot, log, radians, tan
 from typing import Self
 
 from pydantic import BaseModel, Field, model_validator
@@ -252,9 +252,17 @@ def _patterns() -> tuple[tuple[re.Pattern[str], Bearing], ...]:
 
 
 def _borne(side: Estimate, item: Item, object_class: str) -> Estimate:
-    """Return as much of an assumed side as may bear; what was measured is left as it is."""
+    """Return as much of an assumed side as may bear; what was measured is left as it is.
+
+    How narrow a base is and how much of it bears have nothing to do with each other: as with `Sizes.spread` what each
+    is away from its best estimate adds up as squares, in the logarithm.  Both at their ends at once made the least half
+    width of a statue a sixth of its plan.
+    """
     row = bearing_of(item, object_class)
     if not object_class or side.origin is not Origin.ASSUMED or side.low == side.high or row is None:
         return side
     note = f"{say.BEARS(share=(row.low, row.share, row.high), contact=row.title)}; {side.note}"
-    return replace(side, value=row.share * side.value, low=row.low * side.low, high=row.high * side.high, note=note)
+    low = exp(-hypot(log(side.value / side.low), log(row.share / row.low)))
+    high = exp(hypot(log(side.high / side.value), log(row.high / row.share)))
+    value = row.share * side.value
+    return replace(side, value=value, low=low * value, high=high * value, note=note)

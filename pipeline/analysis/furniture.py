@@ -33,6 +33,12 @@ OF_LOOSE = (HALF_WIDTH, CG_HEIGHT, FRICTION, SHELF_HEIGHT)
 OF_FURNITURE = (FREQUENCY, DAMPING, LEVEL_ERROR, *OF_LOOSE)
 """Parameters of a scene that follow from its furniture."""
 
+LONG = 0.6
+"""Share of its larger side that counts as a height when it is guessed what a thing stands on: judgement.
+
+A canoe of 5 m, 0.45 m high, stands in no showcase.
+"""
+
 WHAT_HANGS = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what hangs from above"}
 """What is said of furniture to be usual for, where it is so for whatever hangs."""
 
@@ -162,7 +168,8 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
         named = (kind for kind in (Furniture.PEDESTAL, Furniture.SHELF) if _named(kind).search(case))
         kind = next(named, Furniture.SHOWCASE)
         return FurnitureGuess(kind, Origin.DERIVED, f"for its record names the case or plinth {case!r}")
-    row = _usual(object_class, support.value if hangs else STANDING, item.height_m or 0.0)
+    long = 0.0 if hangs else LONG * max(item.width_m or 0.0, item.depth_m or 0.0)
+    row = _usual(object_class, support.value if hangs else STANDING, max(item.height_m or 0.0, long))
     about = "what stands" if row.object_class == ANY else object_class.replace("_", " ")
     from_ = f" from {row.taller_than:g} m on" if row.taller_than else ""
     about = WHAT_HANGS.get(support, about)

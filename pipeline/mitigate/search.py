@@ -61,8 +61,8 @@ HEAVIEST = (
 OF_MEAN = "That is for the mean of the earthquakes: in the worst of them it moves {worst}."
 """Follows the sentence of a measure that gives room, where the mean of the motions of a level decides."""
 
-UPPER_FIRST = "First fix the upper body to the one that it stands on: loose, it falls sooner than both together."
-"""Comes before the sentence of a measure for two bodies that are followed as one."""
+UPPER_FIRST = "First fix each upper body to the one that it stands on: loose, it falls sooner than all together."
+"""Comes before the sentence of a measure for two bodies and more that are followed as one."""
 
 HELD_FIRST = (
     "First record the brace, clips or ties that its record tells of as installed: until then they do not count."
@@ -436,7 +436,7 @@ class _Search:
             if measure.touches and one.scene.support in STANDING and finishes(one.scene.item, self.runner.values):
                 more = f" {FINISHED}{more}"
             more = f"{hung_by(one.scene) if measure.for_room else ''}{more}"
-            first = f"{UPPER_FIRST} " if say.TWO_BODIES() in one.scene.assumptions else ""
+            first = f"{UPPER_FIRST} " if {say.TWO_BODIES(), say.STACKED()} & set(one.scene.assumptions) else ""
             if held_as_displayed(one.scene.item, one.scene.support):
                 first = f"{HELD_FIRST} {first}"
             self.helped.add(one.index)

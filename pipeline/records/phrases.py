@@ -14,6 +14,10 @@ TWO_BODIES = Clause(
     "its height is that of two bodies, a bust and what it stands on, which are followed as one: where the upper one "
     "stands loose, it falls sooner"
 )
+STACKED = Clause(
+    "it is a stack of stones, which are followed as one body: where no pins hold them together, the upper ones slide "
+    "and rock on those below, and fall sooner"
+)
 MOUNT = Clause("mount: it {mount}, assumed for: {told}")
 NOT_RECORDED = Clause("not recorded")
 HANGING = Clause("hanging: {ways}")

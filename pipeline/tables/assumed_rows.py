@@ -93,6 +93,8 @@ class ObjectClass(AssumedRow):
         Whether rocking itself harms it; else it fails if it falls over.
     why, source : str
         Why an object of this class is treated so, and who says so.
+    base_source : str
+        Who says so of its base in Kouros's own table; "" where that is who says the rest.
     """
 
     printed, named = "classes.csv", "class"
@@ -121,6 +123,7 @@ class ObjectClass(AssumedRow):
     rocking_harms: YesNo = True
     why: Text
     source: Text
+    base_source: str = ""
 
     @field_validator("cg_high", "base_high", "section_high", "fill_high", "clearance_high")
     @classmethod
@@ -155,7 +158,7 @@ class ObjectClass(AssumedRow):
     @cached_property
     def base(self) -> Range | None:
         """Width of its base over its largest width [-]."""
-        return self._range(self.base_ratio, self.base_low, self.base_high)
+        return self._range(self.base_ratio, self.base_low, self.base_high, "" if self.own else self.base_source)
 
     @cached_property
     def critical(self) -> Range | None:
@@ -177,10 +180,10 @@ class ObjectClass(AssumedRow):
         """The class in words, with the table where that is the museum's."""
         return f"{self.title.lower()}{self.aside}"
 
-    def _range(self, value: float | None, low: float | None, high: float | None) -> Range | None:
+    def _range(self, value: float | None, low: float | None, high: float | None, source: str = "") -> Range | None:
         if value is None or low is None or high is None:
             return None
-        return Range(value, low, high, f"{self.table}, {self.name} ({self.source})")
+        return Range(value, low, high, f"{self.table}, {self.name} ({source or self.source})")
 
 
 class Material(AssumedRow):

@@ -14,6 +14,9 @@ from pipeline.tables.rows import Entries, Number, TableRow, Text, YesNo, any_of,
 PAIR = "pair"
 """Two bodies that stand on each other and are followed as one."""
 
+STACK = "stack"
+"""Stones that stand on each other and are followed as one."""
+
 SCREEN = "screen"
 """A folding screen, of which its face weighs."""
 
@@ -88,7 +91,7 @@ class BodyRow(TableRow):
             Kouros's own.
         """
         numbers = {name: getattr(self, name) for name in (*_NUMBERS, "section", "title", "rocking_harms", "source")}
-        out = row.model_copy(update={**numbers, "round": False})
+        out = row.model_copy(update={**numbers, "round": False, "base_source": ""})
         for name in _FOUND:
             # What was worked out of the class is not of this body.
             out.__dict__.pop(name, None)

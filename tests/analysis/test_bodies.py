@@ -7,7 +7,7 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.analysis.scene_parameters import material_of
 from pipeline.analysis.usual import base_of
-from pipeline.records import Item, Mount, Support
+from pipeline.records import Furniture, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed
@@ -105,6 +105,42 @@ def test_a_bust_with_its_column_is_two_bodies() -> None:
                 width_m=0.45, depth_m=0.35)  # fmt: skip
     assert say.TWO_BODIES() in classify(both).assumptions
     assert say.TWO_BODIES() not in classify(replace(both, height_m=0.65)).assumptions
+
+
+@pytest.mark.parametrize(
+    ("title", "stack"),
+    [
+        ("Cairn", True),
+        ("Column of five drums", True),
+        ("Totem, stacked granite in four pieces", True),
+        ("Grabsäule aus fünf Trommeln", True),
+        ("Drummer", False),
+        ("Stele", False),
+    ],
+)
+def test_stones_on_each_other_are_no_monolith(title: str, stack: bool) -> None:
+    stones = Item("10", "G", object_name="sculpture", title=title, medium="granite", height_m=2.1, width_m=0.6,
+                  depth_m=0.6)  # fmt: skip
+    assert (say.STACKED() in classify(stones).assumptions) is stack
+    # A fountain of bronze, or a chair, has no loose stones.
+    assert say.STACKED() not in classify(replace(stones, medium="bronze")).assumptions
+
+
+def test_what_stands_on_wheels_a_cradle_or_a_stand_stands_as_such_things_do() -> None:
+    """Half a wheel base or track: of light aircraft 0.5 to 1.2 m; a hull's keel is narrower than its beam."""
+    glider = Item("12", "G", object_name="aeroplane", title="Glider", medium="wood, fabric", height_m=1.6, width_m=6.0,
+                  depth_m=12.0, mass_kg=180.0)  # fmt: skip
+    half = classify(glider).parameters["half_width"]
+    assert half.low < 0.5 < half.value < 1.2
+    canoe = Item("13", "G", object_name="canoe", title="Dugout canoe", medium="wood", height_m=0.45, width_m=5.2,
+                 depth_m=0.6)  # fmt: skip
+    scene = classify(canoe)
+    assert scene.furniture is Furniture.FLOOR
+    assert scene.parameters["half_width"].value <= 0.2
+    assert 20.0 <= scene.parameters["mass"].value <= 200.0
+    horse = Item("14", "G", object_name="carousel horse", title="Carousel horse", medium="painted basswood",
+                 height_m=1.5, width_m=1.4, depth_m=0.35)  # fmt: skip
+    assert classify(horse).parameters["half_width"].value >= 0.15
 
 
 def test_a_slab_that_stands_stands_on_its_edge() -> None:

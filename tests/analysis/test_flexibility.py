@@ -132,14 +132,14 @@ def test_range_of_a_product() -> None:
 
 
 def test_a_slender_bronze_by_hand() -> None:
-    """A figure 1.2 m high on a square foot of 0.5 x 0.7 x 25 cm, its lower half as slender as that: I = a^4 / 12.
+    """A figure 1.2 m high on a square foot of 0.5 x 0.77 x 25 cm, its lower half as slender as that: I = a^4 / 12.
 
     0.3 of its outline is bronze, half of it in each half; 0.7 of the stiffness of a perfect clamp.
     """
     scene = classify(FIGURE)
     assert scene.object_class == "statue"
     f = scene.parameters["frequency"]
-    side, mass = 0.5 * 0.7 * 0.25, 0.30 * 1.2 * 0.3 * 0.25 * 8700.0
+    side, mass = 0.5 * 0.77 * 0.25, 0.30 * 1.2 * 0.3 * 0.25 * 8700.0
     stiffness = 0.7 * 110e9 * side**4 / 12.0
     gyration = sqrt((0.6**2 + 0.3**2) / 12.0)
     assert scene.parameters["cg_height"].value == 0.6

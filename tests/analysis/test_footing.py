@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import cos, pi, radians, tan
+from math import cos, exp, hypot, log, pi, radians, tan
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from pipeline.errors import InputError
 from pipeline.execute import Threads
 from pipeline.quantities import G
 from pipeline.records import ContactPolygon, Finding, Furniture, Item, Motion, Origin, Support
-from pipeline.tables import table
+from pipeline.tables import read_table, table
 
 DT = 0.005
 TIME = np.arange(200) * DT
@@ -149,18 +150,48 @@ def test_of_the_edges_along_its_axes_the_nearest_is_the_tested_one() -> None:
 
 
 def test_every_class_with_an_assumed_base_owns_up_to_what_may_not_bear() -> None:
-    """Judgement is wide: a quarter of every assumed base is in doubt, and a worn one may be 4 times narrower."""
+    """Judgement is wide: a quarter of every assumed base is in doubt, a natural one was 4 times narrower on a table."""
     based = {row["class"] for row in table("classes") if row["base_ratio"]}
     assert based <= set(object_classes())
     named = [name for row in bearings() for name in row.classes]
     assert sorted(named) == sorted(based)
     for row in bearings():
         assert row.high - row.low >= 0.25
-        assert row.source.startswith("judgement")
-    for row in table("classes"):
-        bears = bearing_of(STAND, row["class"])
-        if bears is not None and bears.contact == "worn_base":
-            assert bears.low * float(row["base_low"]) <= 0.25 * float(row["base_ratio"])
+    natural = bearing_of(replace(STAND, title="Boulder"), "object")
+    assert natural is not None
+    assert natural.low <= 0.25
+
+
+def test_a_narrow_base_and_one_that_hardly_bears_are_two_chances() -> None:
+    """Closed form: two factors that have nothing to do with each other add up as squares, in the logarithm."""
+    row = next(row for row in table("classes") if row["class"] == "statue")
+    bears = bearing_of(STAND, "statue")
+    assert bears is not None
+    best, low, high = (float(row[name]) for name in ("base_ratio", "base_low", "base_high"))
+    item = Item("1", "G", "Figure", object_name="sculpture", medium="bronze", height_m=0.9, width_m=0.6, depth_m=0.5)
+    scene = classify(item)
+    assert scene.object_class == "statue"
+    half = scene.parameters["half_width"]
+    assert half.value == pytest.approx(0.25 * best * bears.share)
+    assert half.low == pytest.approx(half.value * exp(-hypot(log(best / low), log(bears.share / bears.low))))
+    assert half.high == pytest.approx(half.value * exp(hypot(log(high / best), log(bears.high / bears.share))))
+    # Nothing lies outside of both at their ends at once.
+    assert 0.25 * low * bears.low < half.low < half.high < 0.25 * high * bears.high
+
+
+RECORDED = read_table(Path(__file__).parents[1] / "data" / "collections" / "feet_and_bases.csv")
+
+
+@pytest.mark.parametrize("name", sorted({row["class"] for row in RECORDED}))
+def test_assumed_bases_are_those_of_recorded_things(name: str) -> None:
+    """The bases of a museum none of whose were used for the table: most are within, half on either side of the best."""
+    row = next(row for row in table("classes") if row["class"] == name)
+    best, low, high = (float(row[f"base_{end}"]) for end in ("ratio", "low", "high"))
+    kept = [one for one in RECORDED if one["class"] == name and one["kept_back"]]
+    shares = np.array([min(1.0, float(one["base_cm"]) / float(one["narrowest_cm"])) for one in kept])
+    assert shares.size >= 4
+    assert np.mean((shares >= low) & (shares <= high)) >= 0.8
+    assert best == pytest.approx(np.median(shares), rel=0.2)
 
 
 def test_casters_are_known_by_words_before_the_class() -> None:

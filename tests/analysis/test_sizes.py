@@ -53,7 +53,7 @@ def test_a_vase_without_a_width_is_as_wide_as_vases_are() -> None:
     shares = [float(row[c]) for c in ("base_low", "base_ratio", "base_high")]
     borne = (bears.low, bears.share, bears.high)
     base = joint([0.5 * one for one in shares], [0.4 * one for one in wide])
-    assert ends(scene.parameters["half_width"]) == pytest.approx(np.multiply(base, borne).tolist())
+    assert ends(scene.parameters["half_width"]) == pytest.approx(joint(base, borne))
     # It is as deep as it is wide: its mass grows with the square.
     known = classify(replace(VASE, width_m=0.4 * wide[1])).parameters["mass"]
     assert ends(scene.parameters["mass"]) == pytest.approx(joint(ends(known), [(one / wide[1]) ** 2 for one in wide]))

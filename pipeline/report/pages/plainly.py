@@ -92,7 +92,7 @@ def _advised(advice: Recommendation, units: Units) -> tuple[list[str], dict[str,
     if HELD_FIRST in advice.sentence:
         told.append(_("First record what holds it now as installed."))
     if UPPER_FIRST in advice.sentence:
-        told.append(_("First fix the upper body to the one that it stands on."))
+        told.append(_("First fix each upper body to the one that it stands on."))
     phrase = _PHRASES[advice.measure]() if advice.measure in _PHRASES else ""
     try:
         told.append(phrase % numbers if phrase else f"{said(clean(advice.title))}.")
