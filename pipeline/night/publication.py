@@ -53,10 +53,14 @@ class Publication:
         Of the run, after its `assess`.
     photographs
         Of its objects, gathered; none are shown without.
+    previous
+        The report whose pages may be used again; the latest, read when it is needed, where it is left out.
     """
 
-    def __init__(self, scheduler: Scheduler, photographs: Photographs | None = None) -> None:
-        self._scheduler = scheduler
+    def __init__(
+        self, scheduler: Scheduler, photographs: Photographs | None = None, previous: PreviousReport | None = None
+    ) -> None:
+        self._scheduler, self._previous = scheduler, previous
         self._photographs = photographs or Photographs(None)
         self._digests = scheduler.index.digests(list(scheduler.decisions))
         self._pages = [self._settled(page) for page in scheduler.pages]
@@ -125,7 +129,7 @@ class Publication:
     def writer(self) -> ReportWriter:
         """Return the report that the pages go into; it is entered before `publish`, and finished after it."""
         reports, head = self._scheduler.workspace.reports, self._scheduler.context.head
-        previous = PreviousReport.read(reports / "latest")
+        previous = self._previous or PreviousReport.read(reports / "latest")
         return ReportWriter(reports / head.run_id, self._scheduler.context.renderer, previous)
 
     def publish(self, writer: ReportWriter, progress: Progress) -> Tally:

@@ -3,6 +3,7 @@
 import warnings
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any, Protocol, TypeVar
@@ -32,6 +33,7 @@ from pipeline.operations.stopping import uninterrupted
 from pipeline.operations.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
 from pipeline.records import Page, Progress, RunRecord, Tally, Urgent
 from pipeline.report import lasting_name, publish
+from pipeline.report.files.manifest import PreviousReport
 from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.decided import by_object
 from pipeline.report.pages.reading import IMAGES, READING
@@ -93,7 +95,10 @@ def _run(
             # A run that was cut off when its report was shown already, and that the database did not hear of.
             mark_finished(workspace.engine, shown.run_id)
         site = _read_site(workspace, progress)
-        with Staff(settings.execution) as staff, pictures(workspace, site) as drawing:
+        # Nearly every night of the whole museum uses nearly all of it again.
+        previous = None if chosen or dry_run else PreviousReport.read(workspace.reports / "latest")
+        looking = nullcontext() if previous is None else previous.looking()
+        with Staff(settings.execution) as staff, pictures(workspace, site) as drawing, looking:
             if not (resume and _was_read(workspace, cut_off)):
                 new = _refresh(workspace, progress, dry_run=dry_run)
                 staff.call(0 if chosen else new)
@@ -101,7 +106,7 @@ def _run(
             def held() -> Summary:
                 night = _planned(workspace, site, chosen, drawing, started, progress, staff)
                 try:
-                    return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
+                    return _hold(night, previous, progress, chosen, dry_run=dry_run, strict=strict)
                 finally:
                     tidy(settings, night.context.motions)
 
@@ -133,7 +138,15 @@ def _planned(
     return Scheduler(workspace, context, index, objects, decisions_in_force(workspace.engine), staff, charts)
 
 
-def _hold(night: Scheduler, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:
+def _hold(
+    night: Scheduler,
+    previous: PreviousReport | None,
+    progress: Progress,
+    chosen: Selection,
+    *,
+    dry_run: bool,
+    strict: bool,
+) -> Summary:
     """Do what there is to do, store it, publish it, say what changed."""
     workspace, engine = night.workspace, night.workspace.engine
     night.assess(progress, store=not dry_run)
@@ -142,7 +155,7 @@ def _hold(night: Scheduler, progress: Progress, chosen: Selection, *, dry_run: b
         stores = workspace.settings.display.stores
         seen = [number for page in night.pages if page.part.on_display or stores for number in page.numbers()]
         photographs.gather(seen, progress, whole=not chosen)
-    shown = Publication(night, photographs)
+    shown = Publication(night, photographs, previous)
     if dry_run:
         return _judged(summarise(_ended(night, shown, chosen), shown.pages, shown.tally(progress)), strict=strict)
     with shown.writer() as writer:

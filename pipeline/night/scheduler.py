@@ -69,6 +69,8 @@ class PlannedPage:
         Theirs.
     spacings
         Key of the gaps between the neighbours of its gallery; "" where no places are known.
+    key
+        Of the page, where Kouros fails on nothing of it.
     kept
         Of the page in the database, where it is there.
     """
@@ -76,6 +78,7 @@ class PlannedPage:
     part: PagePart
     units: PageUnits
     spacings: str = ""
+    key: str = ""
     kept: Made | None = None
 
     @property
@@ -175,13 +178,14 @@ class Scheduler:
 
     def _missing(self) -> list[_Work]:
         """Find out which pages are as they were, and which units of the others have no results yet."""
-        keys = [page_digest(page.digests(), page.results({}), page.spacings) for page in self.pages]
-        found, damaged = known_pages(self.workspace.engine, keys)
+        for page in self.pages:
+            page.key = page_digest(page.digests(), page.results({}), page.spacings)
+        found, damaged = known_pages(self.workspace.engine, [page.key for page in self.pages])
         self.damaged = frozenset(damaged)
         _damage("page", damaged)
         floors: dict[tuple[str, bool], list[PlannedPage]] = {}
-        for page, key in zip(self.pages, keys, strict=True):
-            page.kept = found.get(key)
+        for page in self.pages:
+            page.kept = found.get(page.key)
             floors.setdefault(self._which(page), []).append(page)
         self._look_up({key for page in self.pages if page.kept is None for key in page.units.keys})
         work = []
@@ -351,6 +355,8 @@ class Scheduler:
 
     def key_of(self, page: PlannedPage) -> str:
         """Return the key of a page, now that it is known what Kouros failed on."""
+        if not self.is_failed(page):
+            return page.key
         named = page.results(self._names)
         return page_digest(page.digests(), named, self._names.get(page.spacings, page.spacings))
 

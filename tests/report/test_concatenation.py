@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.report.files import concatenation
 from pipeline.report.files.concatenation import concatenate
-from pipeline.report.files.exports import HEADERS, TEXTS, schema_of
+from pipeline.report.files.exports import HEADERS, TEXTS, schema_of, table_part
 from pipeline.report.files.manifest import sum_of
 
 SCHEMA = schema_of("recommendations")
@@ -25,12 +25,19 @@ def _cell(field: pa.Field, n: int) -> object:
     return float(n) if pa.types.is_floating(field.type) else f"<{n}>"
 
 
-def table(first: int, count: int) -> pa.Table:
-    rows = [
+def rows(first: int, count: int) -> list[dict[str, object]]:
+    return [
         {field.name: _cell(field, n) for field in SCHEMA} | {"source": None if n % 5 == 0 else "table"}
         for n in range(first, first + count)
     ]
-    return pa.Table.from_pylist(rows, schema=SCHEMA)
+
+
+def table(first: int, count: int) -> pa.Table:
+    return pa.Table.from_pylist(rows(first, count), schema=SCHEMA)
+
+
+def part(first: int, count: int) -> bytes:
+    return table_part("recommendations", rows(first, count))
 
 
 @pytest.mark.parametrize("name", TEXTS)
@@ -44,8 +51,8 @@ def test_texts_follow_each_other_under_one_header(
     header = HEADERS.get(name, b"")
     bodies = [numbers.bytes(int(size)) for size in numbers.integers(0, 60, 200)]
     parts = [tmp_path / f"{at}.{name}" for at in range(len(bodies))]
-    for part, body in zip(parts, bodies, strict=True):
-        part.write_bytes(header + body)
+    for file, body in zip(parts, bodies, strict=True):
+        file.write_bytes(header + body)
     written = concatenate(tmp_path / name, parts)
     assert (tmp_path / name).read_bytes() == header + b"".join(bodies)
     assert written == sum_of(tmp_path / name)
@@ -55,9 +62,9 @@ def test_texts_follow_each_other_under_one_header(
 def test_row_groups_hold_many_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(concatenation, "GROUP", 100)
     starts = np.cumsum([0, *SIZES[:-1]])
-    parts = [tmp_path / f"{at}.parquet" for at in range(len(SIZES))]
-    for part, start, size in zip(parts, starts, SIZES, strict=True):
-        pq.write_table(table(int(start), size), part)
+    parts = [tmp_path / f"{at}.arrow" for at in range(len(SIZES))]
+    for file, start, size in zip(parts, starts, SIZES, strict=True):
+        file.write_bytes(part(int(start), size))
     target = tmp_path / "recommendations.parquet"
     assert concatenate(target, parts) == sum_of(target)
     assert pq.read_table(target) == table(0, 1_000)
@@ -67,9 +74,9 @@ def test_row_groups_hold_many_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("parts", [0, 3])
 def test_a_table_without_rows(parts: int, tmp_path: Path) -> None:
-    files = [tmp_path / f"{at}.parquet" for at in range(parts)]
+    files = [tmp_path / f"{at}.arrow" for at in range(parts)]
     for file in files:
-        pq.write_table(table(0, 0), file)
+        file.write_bytes(part(0, 0))
     target = tmp_path / "recommendations.parquet"
     concatenate(target, files)
     assert pq.read_table(target) == table(0, 0)
@@ -78,13 +85,10 @@ def test_a_table_without_rows(parts: int, tmp_path: Path) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 @pytest.mark.parametrize("name", ["findings.jsonl", "recommendations.parquet"])
 def test_a_full_disk_is_said(name: str, tmp_path: Path) -> None:
-    part = tmp_path / name
-    if part.suffix == ".parquet":
-        pq.write_table(table(0, 5_000), part)
-    else:
-        part.write_bytes(b"x" * (1 << 23))
+    file = tmp_path / name
+    file.write_bytes(part(0, 5_000) if file.suffix == ".parquet" else b"x" * (1 << 23))
     full = tmp_path / "full" / name
     full.parent.mkdir()
     full.symlink_to("/dev/full")
     with pytest.raises(OSError, match="No space left"):
-        concatenate(full, [part])
+        concatenate(full, [file])

@@ -5,6 +5,7 @@ import os
 import shutil
 import warnings
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
@@ -29,14 +30,18 @@ NOT_READ = {"method.html", "motion.html", "news.html"}
 """Pages that every report writes anew, and so has no need of the earlier one's."""
 
 
-def night(folder: Path, previous: Path | None) -> tuple[dict[str, bytes], list[str], int]:
-    """Make the report of the same run again; return its files, what was said, and how many pages were drawn."""
+def night(folder: Path, previous: Path | None, *, beside: bool = False) -> tuple[dict[str, bytes], list[str], int]:
+    """Make the report of the same run again; return its files, what was said, and how many pages were drawn.
+
+    beside : whether the earlier report is looked at beside all this, as a night of the whole museum does it
+    """
     drawn = 0
     tallies: list[Tally] = []
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         before = None if previous is None else PreviousReport.read(previous)
-        with ReportWriter(folder, PageRenderer(HEAD, Units(), Language()), before) as writer:
+        looking = before.looking() if before is not None and beside else nullcontext()
+        with looking, ReportWriter(folder, PageRenderer(HEAD, Units(), Language()), before) as writer:
             for page, found in pages_of(RECORD):
                 key = page_key(writer.renderer, page, ())
                 if writer.has(key):
@@ -116,7 +121,7 @@ def test_no_damage_goes_into_the_next_report(
     if after == before:  # zeros where there were some
         return
     assert [(one.file, bool(one.why)) for one in verify_report(last)] == [(last / name, True)]
-    made, said, _drawn = night(tmp_path / "next", last)
+    made, said, _drawn = night(tmp_path / "next", last, beside=bool(seed % 2))
     assert made == files_of(good)
     assert [str(last / name) in one for one in said] == ([] if name in NOT_READ else [True])
 

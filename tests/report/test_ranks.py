@@ -24,7 +24,7 @@ from pipeline.records import Assessment, Brief, Found, Item, Likelihood, Urgency
 from pipeline.records.likelihood import Sampling
 from pipeline.report import render
 from pipeline.report.files.concatenation import concatenate
-from pipeline.report.files.exports import OBJECT_COLUMNS, RANK, schema_of
+from pipeline.report.files.exports import OBJECT_COLUMNS, RANK, part_of, schema_of, table_part
 from pipeline.report.files.ranks import keys_part, ranks_of
 from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.news_words import to_do
@@ -108,9 +108,10 @@ def test_each_row_of_each_format_gets_the_rank_of_its_object(tmp_path: Path) -> 
             writer.writeheader()
             writer.writerows(rows)
         Path(f"{parts[-1]}.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
-        pq.write_table(pa.Table.from_pylist(rows, schema=schema), f"{parts[-1]}.parquet")
+        Path(f"{parts[-1]}.arrow").write_bytes(table_part("objects", rows))
     for kind in ("csv", "jsonl", "parquet"):
-        concatenate(tmp_path / f"objects.{kind}", [Path(f"{part}.{kind}") for part in parts], ranks)
+        export = f"objects.{kind}"
+        concatenate(tmp_path / export, [Path(f"{part}{Path(part_of(export)).suffix}") for part in parts], ranks)
     expected = [(title, rank or None) for title, rank in zip(titles, np.concatenate(ranks).tolist(), strict=True)]
     with (tmp_path / "objects.csv").open(encoding="utf-8", newline="") as stream:
         read = csv.DictReader(stream)

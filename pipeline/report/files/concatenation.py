@@ -34,7 +34,7 @@ def concatenate(target: Path, parts: Sequence[Path], ranks: Ranks | None = None)
     target : Path
         The file, named as in `exports.EXPORTS`.
     parts : sequence of Path
-        Whole files of the same kind; of several headers the first stays.
+        What the pages add to it (`exports.part_of`); of several headers the first stays.
     ranks : Ranks, optional
         Of an export that is `ranked`: written behind each row.
 
@@ -112,13 +112,11 @@ def _tables(target: Path, parts: Iterable[Path], ranks: Ranks | None) -> None:
     with pq.ParquetWriter(target, schema, compression="zstd") as out:
 
         def write() -> None:
-            # What comes from a Parquet file calls the parts of its lists by another name.
-            out.write_table(pa.concat_tables(waiting).cast(schema), row_group_size=rows)
+            out.write_table(pa.concat_tables(waiting), row_group_size=rows)
 
         for at, part in enumerate(parts):
-            with pq.ParquetFile(part) as file:
-                # Of a few thousand rows threads for each column take three times as long.
-                waiting.append(file.read(use_threads=False))
+            with pa.OSFile(str(part)) as source, pa.ipc.open_file(source) as file:
+                waiting.append(file.read_all())
             if ranks is not None:
                 column = pa.array(ranks[at], pa.int64(), mask=ranks[at] == 0)
                 waiting[-1] = waiting[-1].append_column(schema.field(RANK), column)

@@ -7,7 +7,8 @@ it was written is used again; `verify_report` looks at all of it.
 import hashlib
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -145,6 +146,7 @@ class PreviousReport:
         self.pages = [page.key for page in self.manifest.pages]
         self._by_key = {page.key: page for page in self.manifest.pages}
         self._sound: dict[str, bool] = {}
+        self._begun: dict[str, Future[str | None]] = {}
 
     @classmethod
     def read(cls, folder: Path) -> "PreviousReport":
@@ -170,18 +172,36 @@ class PreviousReport:
         sound = [self._is_sound(name) for name in names]
         return all(sound)
 
+    @contextmanager
+    def looking(self) -> Iterator[None]:
+        """Compare the files of all pages with what was written beside what is done in the block, as far as one gets.
+
+        Of a large report that takes seconds, and far more where they have to come from the disk.
+        """
+        with ThreadPoolExecutor(1, thread_name_prefix="kouros-look") as pool:
+            for page in self.manifest.pages:
+                self._begun |= {name: pool.submit(self._damage, name) for name in page.files}
+            try:
+                yield
+            finally:
+                pool.shutdown(wait=False, cancel_futures=True)
+
     def look(self, keys: Iterable[str]) -> None:
-        """Compare all files of some pages with what was written, on all cores: of a large report that takes seconds."""
+        """Compare all files of some pages with what was written, on all cores, where `looking` did not come to it."""
         pages = (self._by_key[key] for key in keys if key in self._by_key)
         names = [name for page in pages for name in page.files if name not in self._sound]
         with ThreadPoolExecutor() as pool:
-            for name, why in zip(names, pool.map(self._damage, names), strict=True):
+            for name, why in zip(names, pool.map(self._why, names), strict=True):
                 self._note(name, why)
 
     def _is_sound(self, name: str) -> bool:
         if name not in self._sound:
-            self._note(name, self._damage(name))
+            self._note(name, self._why(name))
         return self._sound[name]
+
+    def _why(self, name: str) -> str | None:
+        begun = self._begun.get(name)
+        return self._damage(name) if begun is None or begun.cancel() else begun.result()
 
     def _damage(self, name: str) -> str | None:
         """Say what is wrong with a file, "" for nothing; None for a file that the report never had."""

@@ -21,7 +21,7 @@ from pipeline.planning.plan import PlanTerms
 from pipeline.records import DecisionStatus, Page, Photo, RunChanges, RunRecord, Tally
 from pipeline.report.errors import ReportError
 from pipeline.report.files.concatenation import concatenate, ranked
-from pipeline.report.files.exports import EXPORTS, PARTS_OF_PAGE, WORKBOOK, write_exports_workbook
+from pipeline.report.files.exports import EXPORTS, PARTS_OF_PAGE, WORKBOOK, part_of, write_exports_workbook
 from pipeline.report.files.manifest import (
     PARTS,
     FileSum,
@@ -263,8 +263,8 @@ class ReportWriter:
         """Whether the earlier report has the same pages."""
         return [page.key for page in self._pages] == self._previous.pages
 
-    def _parts(self, export: str) -> list[Path]:
-        at = PARTS_OF_PAGE.index(export)
+    def _parts(self, kind: str) -> list[Path]:
+        at = PARTS_OF_PAGE.index(kind)
         return [self._partial / part_files(page.entry.page.file)[at] for page in self._pages]
 
     def _exporting(self, pool: ThreadPoolExecutor) -> dict[str, Future[FileSum]]:
@@ -272,12 +272,15 @@ class ReportWriter:
         taken = set(filter(self._previous.has, EXPORTS)) if self._same else set()
         self._link(*taken)
         left = [name for name in EXPORTS if name not in taken]
-        ranks = ranks_of(self._parts(KEYS)) if any(map(ranked, left)) else None
+        # Of all these the ranks take longest to find, and need this thread no more than they do.
+        ranks = pool.submit(ranks_of, self._parts(KEYS)) if any(map(ranked, left)) else None
+
+        def made(name: str) -> FileSum:
+            own = ranks.result() if ranks is not None and ranked(name) else None
+            return concatenate(self._partial / name, self._parts(part_of(name)), own)
+
         # What the plan is made of comes first.
-        return {
-            name: pool.submit(concatenate, self._partial / name, self._parts(name), ranks if ranked(name) else None)
-            for name in sorted(left, key=lambda name: name not in PLANNED_FROM)
-        }
+        return {name: pool.submit(made, name) for name in sorted(left, key=lambda name: name not in PLANNED_FROM)}
 
     def _workbook(self, head: RunRecord) -> None:
         if self._same and self._previous.has(WORKBOOK):
