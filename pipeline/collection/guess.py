@@ -40,6 +40,7 @@ from pipeline.collection.guessing.source import (
     source_of,
     workbook,
 )
+from pipeline.collection.guessing.what import named_by
 from pipeline.collection.mapping import MAPPABLE, PRESETS, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.record import units_of
@@ -182,6 +183,14 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     able = candidates(columns)
     _add_misspelt(columns, able, told)
     found = _chosen(name, columns, able, told)
+    naming = named_by(able, found, told.choices)
+    described = naming is not None and naming is not found.get("title")
+    if naming is not None:
+        found["object_name"] = naming
+        told.doubts.append(
+            f"no column is called for what things are: {naming.name!r} is taken to name them"
+            f"{', by its first sentence' * described}; --choose object_name=- leaves that"
+        )
     if not any(key in found and found[key].filled for key in _NAMING):
         told.doubts.append(
             "no column says what the objects are: each is taken for a thing that stands; --choose object_name=COLUMN "
@@ -224,6 +233,10 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     second = None if "object_number" in told.choices else _second_number(columns, found)
     writer = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both, second)
     fields, used = writer.mapped(found)
+    if described and naming is not None and "object_name" in fields:
+        fields["object_name"]["opening"] = True
+        # Sizes may stand in its other sentences.
+        used = [column for column in used if column is not naming]
     document["columns"] = fields
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")

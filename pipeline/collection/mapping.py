@@ -25,7 +25,7 @@ from pydantic import (
 from pipeline.collection.dimensions import languages
 from pipeline.collection.errors import MappingError
 from pipeline.collection.image_names import pattern_keys
-from pipeline.collection.mapping_parts import Display, Images, MappingPart
+from pipeline.collection.mapping_parts import Display, Images, MappingPart, Museum
 from pipeline.collection.record import CHOICES, KINDS, REQUIRED, units_of
 from pipeline.collection.sources.base import Name, Source, SourceSettings
 from pipeline.collection.sources.registry import SOURCES, source_named
@@ -102,13 +102,6 @@ def _of_kind(kind: Source, error: Any) -> dict[str, Any]:
     return {"type": "source", "loc": ("source", *error["loc"]), "msg": message}
 
 
-class Museum(MappingPart):
-    """Whose collection it is."""
-
-    name: Name = Field(description="The museum's name, as reports show it.")
-    credit: str = Field(default="", description="How the museum wants its data to be credited.")
-
-
 class ColumnMap(MappingPart):
     """Where one field of the record comes from."""
 
@@ -149,6 +142,9 @@ class ColumnMap(MappingPart):
         default=False,
         description="Cells were filled in by hand: fractions, decimal commas, another unit and words such as about are "
         "read (8 1/2, 0,3, 30 cm, about 3); a number that names no unit is in that of the column.",
+    )
+    opening: bool = Field(
+        default=False, description="Of a description only its first sentence counts, which says what a thing is."
     )
     optional: bool = Field(default=False, description="The file may lack this column.")
 
@@ -433,6 +429,8 @@ def _fault(field: str, column: ColumnMap) -> str:
         return f"unit is for lengths ({', '.join(LENGTHS)}) and masses ({', '.join(MASSES)}) only; leave it out"
     if column.columns and kind != "text" and column.unit != WRITTEN:
         return f"only texts can be joined from several columns, this is a {kind}; name one column"
+    if column.opening and kind != "text":
+        return f"opening is for texts, this is a {kind}; leave it out"
     if kind == "polygon" and (column.values or column.unit == WRITTEN):
         return f"a polygon needs a unit of {', '.join(LENGTHS)}, and no values; leave out {WRITTEN!r} and values"
     if field in REQUIRED and column.optional:

@@ -27,6 +27,13 @@ class Display(MappingPart):
     )
 
 
+class Museum(MappingPart):
+    """Whose collection it is."""
+
+    name: Name = Field(description="The museum's name, as reports show it.")
+    credit: str = Field(default="", description="How the museum wants its data to be credited.")
+
+
 class Images(MappingPart):
     """Photographs of the objects: how a file, a URL or an address of IIIF follows from the records."""
 

@@ -22,6 +22,9 @@ from pipeline.tables.rows import Entries, checked
 TEXTS = "dimensions"
 """What a column of texts with dimensions is called here; it is no field of the record."""
 
+DESCRIPTION, ARTIST = "description", "artist"
+"""The same of a description, which says what a thing is where nothing else does, and of who made a picture."""
+
 LENGTH = "length_m"
 """The same of a length: it is the width, or else the depth, whichever has no column."""
 
@@ -152,7 +155,7 @@ _USUAL = frozenset({"home", "normal", "usual", "default", "permanent", "stamm", 
 
 
 def _mappable(field: str) -> str:
-    if field not in (*MAPPABLE, TEXTS, LENGTH):
+    if field not in (*MAPPABLE, TEXTS, LENGTH, DESCRIPTION, ARTIST):
         raise InputError(f"is {field!r}, which is no field that a column can be mapped to")
     return field
 
