@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.analysis.rule_table import RuleMatch, fold, stuff, words_of
-from pipeline.analysis.rules import PICTURES, Readings
+from pipeline.analysis.rules import PICTURES, Readings, as_classed
 from pipeline.analysis.shapes import SHAPES, faceless
 from pipeline.collection.dimensions.lexicon import words_for
 from pipeline.records import Item
@@ -172,6 +172,7 @@ def is_alone(item: Item, read: Readings) -> bool:
 def signs_of(item: Item, read: Readings) -> tuple[str, ...]:
     """Return the signs that an object shows: what the model weighs."""
     out, decisive = [BIAS], NOTHING
+    item = as_classed(item)
     alone = is_alone(item, read)
     # A name that only repeats the classification, such as sculpture, leaves the title its say.
     named = read.name is not None and fold(item.object_name) != fold(item.classification)
