@@ -49,7 +49,7 @@ def named_by(
         return next((one for one in able.get(DESCRIPTION, ()) if one.filled), None)
     if filled.intersection(SAYING) or ARTIST in able:
         return None
-    return title if _bodily(able.get(TEXTS, ()), filled) else None
+    return title if _bodily(able.get(TEXTS) or able.get(DESCRIPTION, ()), filled) else None
 
 
 def _bodily(texts: Sequence[Column], filled: set[str]) -> bool:
