@@ -31,6 +31,7 @@ from pipeline.collection.guessing.fields import (
     tells_display,
 )
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named, unit_in
+from pipeline.collection.guessing.orders import order_of
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -257,6 +258,10 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
         if len(units) == 1:
             document["dimensions"]["unit"] = units.pop()
+        order, said = order_of(texts)
+        if order:
+            document["dimensions"]["order"] = list(order)
+        told.doubts += [said] * bool(said)
     taken = {id(column) for column in (*used, *texts)}
     left = [column for column in columns if id(column) not in taken and column.filled]
     lost = [one for one in left if is_length(one.name) or (one.numeric and is_side(one.name))]

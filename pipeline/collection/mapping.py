@@ -25,7 +25,7 @@ from pydantic import (
 from pipeline.collection.dimensions import languages
 from pipeline.collection.errors import MappingError
 from pipeline.collection.image_names import pattern_keys
-from pipeline.collection.mapping_parts import Display, Images, MappingPart, Museum
+from pipeline.collection.mapping_parts import Display, Holds, Images, MappingPart, Museum
 from pipeline.collection.record import CHOICES, KINDS, REQUIRED, units_of
 from pipeline.collection.sources.base import Name, Source, SourceSettings
 from pipeline.collection.sources.registry import SOURCES, source_named
@@ -174,6 +174,11 @@ class Texts(MappingPart):
         description="Language of the texts (en, fr, de, nl, it, es, pt, ro, el, tr, pl, cs, hu, ru), which settles "
         "short labels, L. or D.; without it the words of each text do.",
     )
+    order: tuple[Literal["height", "width", "depth", "length", "diameter"], ...] = Field(
+        default=(),
+        description="What numbers without a label are by their order, where it is not height, width, depth: such as "
+        '["length", "width", "height"].',
+    )
     framed: bool = Field(default=True, description="Whether works in frames hang in them: then the frame counts.")
     optional: bool = Field(default=False, description="The source may lack these columns.")
 
@@ -190,26 +195,6 @@ class Texts(MappingPart):
         if language and language not in languages():
             raise InputError(f"{language!r} is no language of dimension texts; use one of {', '.join(languages())}")
         return language
-
-
-class Holds(MappingPart):
-    """What holds where a source contradicts itself in most rows; without it the import stops there."""
-
-    texts: Literal["columns", "texts"] | None = Field(
-        default=None, description="Columns of sizes and masses, or the texts of dimensions that say otherwise."
-    )
-    sides: Literal["mapping"] | None = Field(
-        default=None, description="Height, width and depth as mapped, although texts say that they are exchanged."
-    )
-    units: Literal["mapping"] | None = Field(
-        default=None, description="Units as mapped, although a column of units, or how the numbers are written, differ."
-    )
-    weights: Literal["mapping"] | None = Field(
-        default=None, description="Masses and their unit as mapped, although they do not fit the objects' sizes."
-    )
-    display: Literal["flag", "location"] | None = Field(
-        default=None, description="The flag, or the location that says otherwise, on whether an object is on display."
-    )
 
 
 class Mapping(MappingPart):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from pipeline.collection.image_names import pattern_keys
@@ -56,3 +58,23 @@ class Images(MappingPart):
                 "write one of them where the number of the object, or what the column gives, stands"
             )
         return pattern
+
+
+class Holds(MappingPart):
+    """What holds where a source contradicts itself in most rows; without it the import stops there."""
+
+    texts: Literal["columns", "texts"] | None = Field(
+        default=None, description="Columns of sizes and masses, or the texts of dimensions that say otherwise."
+    )
+    sides: Literal["mapping"] | None = Field(
+        default=None, description="Height, width and depth as mapped, although texts say that they are exchanged."
+    )
+    units: Literal["mapping"] | None = Field(
+        default=None, description="Units as mapped, although a column of units, or how the numbers are written, differ."
+    )
+    weights: Literal["mapping"] | None = Field(
+        default=None, description="Masses and their unit as mapped, although they do not fit the objects' sizes."
+    )
+    display: Literal["flag", "location"] | None = Field(
+        default=None, description="The flag, or the location that says otherwise, on whether an object is on display."
+    )

@@ -120,7 +120,9 @@ def fill(
                 values,
                 given,
                 cells,
-                parse(text, default_unit=mapping.unit, decimal=decimal, language=mapping.language),
+                parse(
+                    text, default_unit=mapping.unit, decimal=decimal, language=mapping.language, order=mapping.order
+                ),
                 mapping,
                 texts_hold,
             )

@@ -60,6 +60,12 @@ _REFERENCE = re.compile(r"(?<=[a-z])(?:Ref|Grp|Tab)$")
 """Behind the name of what is told by another table."""
 _SIDE = re.compile(r"([^(（\[]+)[(（\[]([^)）\]]+)[)）\]]")
 """The name of a column that says in brackets what of something it is."""
+LEGEND = re.compile(
+    r"(?<![^\W_])(?:(?:[^\W\d_x×]{1,2}\.?\s*[x×]\s*){1,2}[^\W\d_x×]{1,2}(?![^\W_])"
+    r"|(?:[^\W\d_]{3,}\.?\s+[x×]\s+){1,2}[^\W\d_]{3,})",
+    re.IGNORECASE,
+)
+"""What the head of a column says of the order: L x B x H, alto x ancho x fondo."""
 _OTHER = re.compile(r"[^\w]+|_")
 _SHORT = 4
 """Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
@@ -397,6 +403,11 @@ def _forms(name: str) -> Iterator[str]:
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:
         yield plain(outside)
+        yield plain(unit_in(outside)[0])
+    # "Dimensions LxWxH mm": of what order the sizes are.
+    unordered = LEGEND.sub(" ", name)
+    if unordered.strip() and unordered != name:
+        yield plain(unit_in(unordered.strip())[0])
     # The first of several columns of one name: "Denomination_1", "Material 1".
     first = _FIRST.fullmatch(name.strip())
     if first is not None:
