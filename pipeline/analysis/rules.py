@@ -72,6 +72,20 @@ _RELATED = 4
 """Letters from which a word may be a plural or a small kind of another."""
 _MADE_OF = re.compile(r"木造|木彫|一木造|寄木造|[銅石鉄塑]造|塑像|(?:脱活)?乾漆|金銅|鋳銅|青銅|[陶磁石木銅鉄]製")
 """What a Japanese title begins with that says what its thing is made of: no picture is called so."""
+_OF_STUFF = re.compile(
+    r"(?:bronze|brass|copper|pewter|marble|limestone|alabaster|terracotta|clay|ceramic|earthenware|stoneware|porcelain"
+    r"|faience|ivory|jade|bronzene|tonerne|holzerne|silberne|glaserne|irdene|marmorne|zinnerne|drewnian|glinian|brazow"
+    r"|srebrn|szklan|marmurow|porcelanow|dreven|hlinen|bronzov|stribrn|sklenen|mramorov|глинян|бронзов|серебрян|стеклян"
+    r"|мраморн|деревянн|фарфоров|πηλιν|μαρμαριν|χαλκιν|ασημενι|γυαλιν|ξυλιν|λιθιν|ορειχαλκιν)\w*\s"
+    r"|.*\s(?:in|di|en|de|em|din|aus|van|of|z|ze)\s(?:bronzo|bronze|bronce|brons|bronz|brazu|marmo|marbre|marmol|marmore"
+    r"|marmer|marmura|marmuru|terracotta|terre cuite|terracota|barro|lut|gliny|porcellana|porcelaine|porcelana|porzellan"
+    r"|legno|bois|madera|madeira|holz|lemn|drewna|argento|argent|plata|prata|silber|zilver|argint|srebra|vetro|verre"
+    r"|vidrio|vidro|ottone|laiton|laton|latao|messing|avorio|ivoire|marfil|marfim|alabastro|albatre|gesso|platre|yeso)\b"
+)
+"""How a title begins, or ends, folded, that says what its thing is made of, as the name of a body does."""
+_BODIES = frozenset({"vessel", "dish", "stemmed_glass", "bust", "statue", "figurine", "lamp", "cabinet", "clock", "relief"})
+_WORDS_OF_NAME = 5
+"""Words of which such a title has no more."""
 _IN_FULL = re.compile(r"[^のとやにいるたなを\s]{4,}")
 """What stands before the word for the thing in its full Japanese name, and in a picture's title seldom."""
 _FIGURES = ("statue", "standing_figure", "figurine")
@@ -175,7 +189,9 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
 
 
 def _is_full(text: str, title: RuleMatch) -> bool:
-    """Whether a Japanese title is the full name of its thing: what it is made of, or its ornament, and its name."""
+    """Whether a title is the full name of its thing: what it is made of, or in Japanese its ornament, and its name."""
+    if title.rule.object_class in _BODIES and len(text.split()) <= _WORDS_OF_NAME and _OF_STUFF.match(fold(text)):
+        return True
     word = title.word.removeprefix("*")
     if not IDEOGRAPH.match(word) or not text.endswith(word):
         return False

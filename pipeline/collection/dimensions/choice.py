@@ -224,6 +224,7 @@ def _base(group: list[DimensionPart]) -> dict[str, Choice]:
 
 def _mass(dimensions: Dimensions, chosen: list[DimensionPart]) -> Choice | None:
     masses = [p for p in dimensions.parts if p.dimension == "weight" and p.value is not None and p.value > 0.0]
+    masses = [p for p in masses if not p.name.endswith("bore")]  # a gun of ten pounds shoots as much
     if not masses:
         return None
     group = chosen[0].group if chosen else -1
