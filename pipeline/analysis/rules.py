@@ -80,7 +80,7 @@ _OF_STUFF = re.compile(
     r"|.*\s(?:in|di|en|de|em|din|aus|van|of|z|ze)\s(?:bronzo|bronze|bronce|brons|bronz|brazu|marmo|marbre|marmol|marmore"
     r"|marmer|marmura|marmuru|terracotta|terre cuite|terracota|barro|lut|gliny|porcellana|porcelaine|porcelana|porzellan"
     r"|legno|bois|madera|madeira|holz|lemn|drewna|argento|argent|plata|prata|silber|zilver|argint|srebra|vetro|verre"
-    r"|vidrio|vidro|ottone|laiton|laton|latao|messing|avorio|ivoire|marfil|marfim|alabastro|albatre|gesso|platre|yeso)\b"
+    r"|vidrio|vidro|ottone|laiton|laton|latao|messing|avorio|ivoire|marfil|marfim|alabastro|albatre|gesso|platre|yeso)$"
 )
 """How a title begins, or ends, folded, that says what its thing is made of, as the name of a body does."""
 _BODIES = frozenset({"vessel", "dish", "stemmed_glass", "bust", "statue", "figurine", "lamp", "cabinet", "clock", "relief"})
