@@ -270,6 +270,9 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     only = _PART.search(folded)
     if only is not None:
         out += _spelt(of, [only.group(1)])
+    thing, _, ornament = folded.partition(" ")
+    if ornament and IDEOGRAPH.match(thing) and IDEOGRAPH.match(ornament) and thing in of.by_word:
+        out.append(thing)  # 硯箱 猿月取蒔絵: a Japanese catalogue may name the thing first, and then what is on it
     for part in _parts(folded):
         found = WORD.findall(part)
         if len(found) > 1 and found[-1] in _ON_WALLS and found[-2] in of.by_word and _relief(of, found[-2]):
