@@ -78,12 +78,14 @@ _OF_STUFF = re.compile(
     r"|srebrn|szklan|marmurow|porcelanow|dreven|hlinen|bronzov|stribrn|sklenen|mramorov|глинян|бронзов|серебрян|стеклян"
     r"|мраморн|деревянн|фарфоров|πηλιν|μαρμαριν|χαλκιν|ασημενι|γυαλιν|ξυλιν|λιθιν|ορειχαλκιν)\w*\s"
     r"|.*\s(?:in|di|en|de|em|din|aus|van|of|z|ze)\s(?:bronzo|bronze|bronce|brons|bronz|brazu|marmo|marbre|marmol|marmore"
-    r"|marmer|marmura|marmuru|terracotta|terre cuite|terracota|barro|lut|gliny|porcellana|porcelaine|porcelana|porzellan"
-    r"|legno|bois|madera|madeira|holz|lemn|drewna|argento|argent|plata|prata|silber|zilver|argint|srebra|vetro|verre"
-    r"|vidrio|vidro|ottone|laiton|laton|latao|messing|avorio|ivoire|marfil|marfim|alabastro|albatre|gesso|platre|yeso)$"
+    r"|marmer|marmura|marmuru|terracotta|terre cuite|terracota|barro|lut|gliny|porcellana|porcelaine|porcelana"
+    r"|porzellan|legno|bois|madera|madeira|holz|lemn|drewna|argento|argent|plata|prata|silber|zilver|argint|srebra|vetro"
+    r"|verre|vidrio|vidro|ottone|laiton|laton|latao|messing|avorio|ivoire|marfil|marfim|alabastro|albatre|gesso|platre|yeso)$"
 )
 """How a title begins, or ends, folded, that says what its thing is made of, as the name of a body does."""
-_BODIES = frozenset({"vessel", "dish", "stemmed_glass", "bust", "statue", "figurine", "lamp", "cabinet", "clock", "relief"})
+_BODIES = frozenset(
+    {"vessel", "dish", "stemmed_glass", "bust", "statue", "figurine", "lamp", "cabinet", "clock", "relief"}
+)
 _WORDS_OF_NAME = 5
 """Words of which such a title has no more."""
 _IN_FULL = re.compile(r"[^のとやにいるたなを\s]{4,}")
@@ -95,7 +97,9 @@ _BESIDE = re.compile(
     r"|z|ze|na|s|se|av|af|med|fran|fra|из|на|с|με|απο|σε)\s*"
 )
 """Words behind which stands what a thing has, shows, stands on or is made of, and not what it is."""
-_STUFF = re.compile(r"\b(?:glass|glas|glases|verre|vetro|vidrio|vidro|sticla|szkla|skla|porcelain|porzellan|porcelaine)$")
+_STUFF = re.compile(
+    r"\b(?:glass|glas|glases|verre|vetro|vidrio|vidro|sticla|szkla|skla|porcelain|porzellan|porcelaine)$"
+)
 """Stuff at the end of a part that is also the name of a thing."""
 _ON_WALLS = frozenset({"mural", "murale", "murales", "murali", "muraux"})
 """Words that behind a relief say only where it is: a relief mural is a relief, and no wall painting."""
@@ -104,19 +108,55 @@ _PART = re.compile(
     r"\s*\)?\s*$"
 )
 """What is said behind the name of a thing of which only a part is there: jar (lid)."""
-_SCULPTURES = frozenset({
-    *("sculpture", "sculptures", "skulptur", "skulpturen", "plastik", "scultura", "sculture", "escultura", "esculturas"),
-    *("beeldhouwwerk", "plastiek", "sculptura", "rzezba", "plastika", "彫刻", "γλυπτο", "γλυπτικη", "veistos", "statue"),
-})
+_SCULPTURES = frozenset(
+    {
+        *(
+            "sculpture",
+            "sculptures",
+            "skulptur",
+            "skulpturen",
+            "plastik",
+            "scultura",
+            "sculture",
+            "escultura",
+            "esculturas",
+        ),
+        *(
+            "beeldhouwwerk",
+            "plastiek",
+            "sculptura",
+            "rzezba",
+            "plastika",
+            "彫刻",
+            "γλυπτο",
+            "γλυπτικη",
+            "veistos",
+            "statue",
+        ),
+    }
+)
 """Object names, folded, of which a title may name a kind: a sculpture that is called mask, bust or relief."""
 _CARVED = ("bust", "relief")
 """Classes of such kinds; a boot or a crown of marble stands as other sculpture does."""
 _MASK = re.compile(r"\*?(?:mas[kqc]|面|仮面)")
-_KINDS_ONLY = frozenset({
-    *("artwork", "work of art", "kunstwerk", "opera", "oeuvre", "obra", "ceramic", "ceramics", "keramik", "ceramique"),
-    *("ceramica", "keramiek", "ceramika", "keramika", "陶磁", "furniture", "mobel", "mobilier", "mobili"),
-    *("mueble", "muebles", "meubel", "meubels", "mebel", "meble", "nabytek", "mobiliario"),
-})
+_KINDS_ONLY = frozenset(
+    {
+        *(
+            "artwork",
+            "work of art",
+            "kunstwerk",
+            "opera",
+            "oeuvre",
+            "obra",
+            "ceramic",
+            "ceramics",
+            "keramik",
+            "ceramique",
+        ),
+        *("ceramica", "keramiek", "ceramika", "keramika", "陶磁", "furniture", "mobel", "mobilier", "mobili"),
+        *("mueble", "muebles", "meubel", "meubels", "mebel", "meble", "nabytek", "mobiliario"),
+    }
+)
 """Object names, folded, that say no more than a classification does, and leave the title its say."""
 _BLANK = ("", "(not assigned)", "not assigned", "unclassified", "uncategorized", "unknown", "n/a", "none", "-")
 """Classifications that say nothing."""

@@ -10,7 +10,8 @@ from statistics import median
 
 from pipeline.collection.dimensions import agree
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.mapping import WRITTEN, ColumnMap, Holds
+from pipeline.collection.mapping import WRITTEN, ColumnMap
+from pipeline.collection.mapping_parts import Holds
 from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.record import units_of
 from pipeline.collection.unit_audit import Evidence, Suspicion, wrong_units

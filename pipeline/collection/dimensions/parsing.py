@@ -117,9 +117,7 @@ def parse(
                 message = f"{q.word} is read as {q.num / q.den:.10g}, its point as a mark of thousands"
                 notes.append(DimensionNote("ambiguous", message, q.start, q.end))
     parts = tuple(
-        _part(group, number, q)
-        for number, group in enumerate(_ordered(groups, notes, order))
-        for q in group.quantities
+        _part(group, number, q) for number, group in enumerate(_ordered(groups, notes, order)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
 

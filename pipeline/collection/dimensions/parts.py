@@ -4,7 +4,22 @@ from __future__ import annotations
 
 FRAMED = frozenset({"framed", "frame"})
 DETAILS = frozenset(
-    {"rim", "seat", "lid", "top", "mouth", "handle", "stem", "neck", "cord", "label", "crate", "storage", "opening", "bore"}
+    {
+        "rim",
+        "seat",
+        "lid",
+        "top",
+        "mouth",
+        "handle",
+        "stem",
+        "neck",
+        "cord",
+        "label",
+        "crate",
+        "storage",
+        "opening",
+        "bore",
+    }
 )
 BASES = frozenset({"base", "foot", "feet", "plinth", "pedestal", "bottom"})
 ROUND = frozenset({"foot", "rim", "mouth", "neck", "opening"})

@@ -56,8 +56,8 @@ def order_of(columns: Sequence[Column]) -> tuple[tuple[str, ...], str]:
         return (), ""
     if often < MOST * sum(told.values()):
         return (), (
-            f"{bare} texts give sizes without labels, read as {' x '.join(USUAL)}, and those with labels are in several "
-            f"orders, {' x '.join(order)} most often: look at them"
+            f"{bare} texts give sizes without labels, read as {' x '.join(USUAL)}, and those with labels are in "
+            f"several orders, {' x '.join(order)} most often: look at them"
         )
     return order, (
         f"{bare} texts give sizes without labels: read as {' x '.join(order)}, as {often} of the column's texts with "
