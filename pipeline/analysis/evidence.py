@@ -16,15 +16,16 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
+from itertools import starmap
 from math import log
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.analysis.rule_table import RuleMatch, fold, stuff, words_of
-from pipeline.analysis.rules import PICTURES, Readings
+from pipeline.analysis.rule_table import RuleMatch, RuleTable, fold, stuff, words_of
+from pipeline.analysis.rules import PICTURES, Readings, as_classed, readings
 from pipeline.analysis.shapes import SHAPES, faceless
 from pipeline.collection.dimensions.lexicon import words_for
 from pipeline.records import Item
@@ -88,6 +89,10 @@ FLOOR = 0.02
 
 It is what the scatter between museums that were left out leaves over: see pipeline.verification.class_scores.
 """
+SEVERAL, FIRST = 2, 2.0
+"""Things from which an object name names several, and what the first of them counts for (judgement)."""
+_AND = re.compile(r"[;|\n]")
+"""What parts several names of things in one cell."""
 _READ = 400
 """Characters of a text that are searched."""
 _WORD = re.compile(r"[^\W\d_]+")
@@ -172,6 +177,7 @@ def is_alone(item: Item, read: Readings) -> bool:
 def signs_of(item: Item, read: Readings) -> tuple[str, ...]:
     """Return the signs that an object shows: what the model weighs."""
     out, decisive = [BIAS], NOTHING
+    item = as_classed(item)
     alone = is_alone(item, read)
     # A name that only repeats the classification, such as sculpture, leaves the title its say.
     named = read.name is not None and fold(item.object_name) != fold(item.classification)
@@ -260,17 +266,43 @@ def _chances(signs: tuple[str, ...]) -> tuple[Chance, ...]:
     return tuple(Chance(of.classes[at], float(shares[at])) for at in order)
 
 
-def chances_of(item: Item, read: Readings) -> tuple[Chance, ...]:
+def chances_of(item: Item, read: Readings, among: RuleTable | None = None) -> tuple[Chance, ...]:
     """Return the probability of each class, the likeliest first.
 
-    One class alone where an identifier or a rule of the museum's own decides; none where the record names nothing.
+    One class alone where an identifier or a rule of the museum's own decides; none where the record names nothing.  An
+    object name that names several things, parted by semicolons, is each of them with a share.
+
+    among : the table of rules by which the record was read; None for Kouros's own
     """
     if read.silent and not any((item.title, item.object_name, item.classification, item.material, item.medium)):
         return ()
     if read.outright:
         certain = IDENTIFIED if read.decided.evidence.startswith("AAT") else 1.0
         return (Chance(read.decided.rule.object_class, certain),)
-    return _chances(signs_of(item, read))
+    shares = _several(item, read, among)
+    if not shares:
+        return _chances(signs_of(item, read))
+    found: dict[str, float] = {}
+    for share, signs in shares:
+        for one in _chances(signs):
+            found[one.object_class] = found.get(one.object_class, 0.0) + share * one.probability
+    return tuple(sorted(starmap(Chance, found.items()), key=lambda one: -one.probability))
+
+
+def _several(item: Item, read: Readings, among: RuleTable | None) -> list[tuple[float, tuple[str, ...]]]:
+    """Return the signs of each of several things that an object name names, with its share; [] where it names one.
+
+    The first counts for two of the others.  Where the title names one of them, that is meant.
+    """
+    names = [name for name in _AND.split(item.object_name[:_READ]) if name.strip()]
+    if len(names) < SEVERAL or (read.title is not None and read.name is read.title):
+        return []
+    each = [replace(item, object_name=name) for name in dict.fromkeys(names)]
+    said = [(one, told) for one in each if (told := readings(one, among)).name is not None]
+    if len({told.name.rule.object_class for _, told in said if told.name is not None}) < SEVERAL:
+        return []
+    parts = [FIRST, *(1.0 for _ in said[1:])]
+    return [(part / sum(parts), signs_of(one, told)) for part, (one, told) in zip(parts, said, strict=True)]
 
 
 def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | None:

@@ -26,7 +26,7 @@ def class_of(item: Item, rules: RuleTable | None = None, decided: tuple[str, str
     if decided is not None:
         return TakenClass(*decided)
     read = readings(item, rules)
-    chances = chances_of(item, read)
+    chances = chances_of(item, read, rules)
     taken = taken_of(item, read, chances)
     if taken is None:
         return _open(read, _told(chances))

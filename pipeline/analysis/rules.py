@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from pipeline.analysis.rule_table import (
@@ -72,10 +72,35 @@ _RELATED = 4
 """Letters from which a word may be a plural or a small kind of another."""
 _MADE_OF = re.compile(r"木造|木彫|一木造|寄木造|[銅石鉄塑]造|塑像|(?:脱活)?乾漆|金銅|鋳銅|青銅|[陶磁石木銅鉄]製")
 """What a Japanese title begins with that says what its thing is made of: no picture is called so."""
+_OF_STUFF = re.compile(
+    r"(?:bronze|brass|copper|pewter|marble|limestone|alabaster|terracotta|clay|ceramic|earthenware|stoneware|porcelain"
+    r"|faience|ivory|jade|bronzene|tonerne|holzerne|silberne|glaserne|irdene|marmorne|zinnerne|drewnian|glinian|brazow"
+    r"|srebrn|szklan|marmurow|porcelanow|dreven|hlinen|bronzov|stribrn|sklenen|mramorov|глинян|бронзов|серебрян|стеклян"
+    r"|мраморн|деревянн|фарфоров|πηλιν|μαρμαριν|χαλκιν|ασημενι|γυαλιν|ξυλιν|λιθιν|ορειχαλκιν)\w*\s"
+    r"|.*\s(?:in|di|en|de|em|din|aus|van|of|z|ze)\s(?:bronzo|bronze|bronce|brons|bronz|brazu|marmo|marbre|marmol|marmore"
+    r"|marmer|marmura|marmuru|terracotta|terre cuite|terracota|barro|lut|gliny|porcellana|porcelaine|porcelana"
+    r"|porzellan|legno|bois|madera|madeira|holz|lemn|drewna|argento|argent|plata|prata|silber|zilver|argint|srebra|vetro"
+    r"|verre|vidrio|vidro|ottone|laiton|laton|latao|messing|avorio|ivoire|marfil|marfim|alabastro|albatre|gesso|platre|yeso)$"
+)
+"""How a title begins, or ends, folded, that says what its thing is made of, as the name of a body does."""
+_BODIES = frozenset(
+    {"vessel", "dish", "stemmed_glass", "bust", "statue", "figurine", "lamp", "cabinet", "clock", "relief"}
+)
+_WORDS_OF_NAME = 5
+"""Words of which such a title has no more."""
 _IN_FULL = re.compile(r"[^のとやにいるたなを\s]{4,}")
 """What stands before the word for the thing in its full Japanese name, and in a picture's title seldom."""
 _FIGURES = ("statue", "standing_figure", "figurine")
 """Classes of what a picture may show by the same name: a picture of Kannon is a figure of Kannon too."""
+_BESIDE = re.compile(
+    r"\s*(?:with|in|by|on|showing|depicting|mit|aus|auf|avec|sur|con|per|su|para|sobre|com|em|met|op|cu|din|pe"
+    r"|z|ze|na|s|se|av|af|med|fran|fra|из|на|с|με|απο|σε)\s*"
+)
+"""Words behind which stands what a thing has, shows, stands on or is made of, and not what it is."""
+_STUFF = re.compile(
+    r"\b(?:glass|glas|glases|verre|vetro|vidrio|vidro|sticla|szkla|skla|porcelain|porzellan|porcelaine)$"
+)
+"""Stuff at the end of a part that is also the name of a thing."""
 _ON_WALLS = frozenset({"mural", "murale", "murales", "murali", "muraux"})
 """Words that behind a relief say only where it is: a relief mural is a relief, and no wall painting."""
 _PART = re.compile(
@@ -83,6 +108,56 @@ _PART = re.compile(
     r"\s*\)?\s*$"
 )
 """What is said behind the name of a thing of which only a part is there: jar (lid)."""
+_SCULPTURES = frozenset(
+    {
+        *(
+            "sculpture",
+            "sculptures",
+            "skulptur",
+            "skulpturen",
+            "plastik",
+            "scultura",
+            "sculture",
+            "escultura",
+            "esculturas",
+        ),
+        *(
+            "beeldhouwwerk",
+            "plastiek",
+            "sculptura",
+            "rzezba",
+            "plastika",
+            "彫刻",
+            "γλυπτο",
+            "γλυπτικη",
+            "veistos",
+            "statue",
+        ),
+    }
+)
+"""Object names, folded, of which a title may name a kind: a sculpture that is called mask, bust or relief."""
+_CARVED = ("bust", "relief")
+"""Classes of such kinds; a boot or a crown of marble stands as other sculpture does."""
+_MASK = re.compile(r"\*?(?:mas[kqc]|面|仮面)")
+_KINDS_ONLY = frozenset(
+    {
+        *(
+            "artwork",
+            "work of art",
+            "kunstwerk",
+            "opera",
+            "oeuvre",
+            "obra",
+            "ceramic",
+            "ceramics",
+            "keramik",
+            "ceramique",
+        ),
+        *("ceramica", "keramiek", "ceramika", "keramika", "陶磁", "furniture", "mobel", "mobilier", "mobili"),
+        *("mueble", "muebles", "meubel", "meubels", "mebel", "meble", "nabytek", "mobiliario"),
+    }
+)
+"""Object names, folded, that say no more than a classification does, and leave the title its say."""
 _BLANK = ("", "(not assigned)", "not assigned", "unclassified", "uncategorized", "unknown", "n/a", "none", "-")
 """Classifications that say nothing."""
 
@@ -111,6 +186,13 @@ class Readings:
         return not (self.outright or self.name or self.classification or self.medium or self.title)
 
 
+def as_classed(item: Item) -> Item:
+    """Return a record whose object name is only a kind of things, such as ceramics, with that as its classification."""
+    if item.classification or not item.title or fold(item.object_name).strip() not in _KINDS_ONLY:
+        return item
+    return replace(item, classification=item.object_name, object_name="")
+
+
 def rule_for(item: Item, among: RuleTable | None = None) -> RuleMatch:
     """Return the first rule whose conditions hold for the object, of Kouros's table or another."""
     return readings(item, among).decided
@@ -119,6 +201,7 @@ def rule_for(item: Item, among: RuleTable | None = None) -> RuleMatch:
 def readings(item: Item, among: RuleTable | None = None) -> Readings:
     """Return what each part of a record says of the class, and the rule that decides among them."""
     of = among or rules()
+    item = as_classed(item)
     if item.aat:
         recorded = identifiers(item.aat) & of.aat
         for rule in of.rules if recorded else ():
@@ -135,7 +218,7 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     title = _named(item, item.title, kinds, of)
     if name is None and title is not None and not item.object_name and _is_full(item.title, title):
         name = title
-    if name is not None and title is not None and (_narrows(title, name) or _one_of_types(title, item, of)):
+    if name is not None and title is not None and (_narrows(title, name, item) or _one_of_types(title, item, of)):
         name = title
     # What is painted, drawn or printed is flat, whatever its title says that it shows, but for its own format.
     flat = made is not None and made.rule.object_class in PICTURES
@@ -146,7 +229,9 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
 
 
 def _is_full(text: str, title: RuleMatch) -> bool:
-    """Whether a Japanese title is the full name of its thing: what it is made of, or its ornament, and its name."""
+    """Whether a title is the full name of its thing: what it is made of, or in Japanese its ornament, and its name."""
+    if title.rule.object_class in _BODIES and len(text.split()) <= _WORDS_OF_NAME and _OF_STUFF.match(fold(text)):
+        return True
     word = title.word.removeprefix("*")
     if not IDEOGRAPH.match(word) or not text.endswith(word):
         return False
@@ -162,7 +247,7 @@ def _one_of_types(title: RuleMatch, item: Item, of: RuleTable) -> bool:
     return any(word in titled for part in item.object_name[:_READ].split(";")[1:] for word in _candidates(part, of)[:1])
 
 
-def _narrows(title: RuleMatch, name: RuleMatch) -> bool:
+def _narrows(title: RuleMatch, name: RuleMatch, item: Item) -> bool:
     """Whether a title names a kind of what the object name says: a Kronleuchter is a Leuchter, and no candlestick.
 
     Where the name is of a light in general, a title that names one which hangs is of that kind whatever its words are.
@@ -173,7 +258,10 @@ def _narrows(title: RuleMatch, name: RuleMatch) -> bool:
     hangs = (name.rule.name, title.rule.name) == LIGHTS and thing in ANY_LIGHT
     lidded = kind.rpartition(" ")[2] in LIDS  # a copa con tapa is a copa still, where a pahar cu picior is a goblet
     longer = kind != thing and bool(thing) and (kind.endswith(thing) or (kind.startswith(f"{thing} ") and not lidded))
-    return hangs or longer
+    carved = fold(item.object_name).strip() in _SCULPTURES and (
+        title.rule.object_class in _CARVED or bool(_MASK.match(title.word))
+    )
+    return hangs or longer or carved
 
 
 def _wordless(item: Item, kinds: frozenset[str], of: RuleTable) -> tuple[RuleMatch | None, RuleMatch | None]:
@@ -213,7 +301,6 @@ def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleM
 def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     """Return the known words and *endings of an object name or title, the likeliest name of the thing first."""
     folded = _IN_SMALL.sub("", _OF_MANY.sub("", _OF_SET.sub("", _MARK.sub(" , ", fold(text)))))
-    parts = BREAK.split(folded)
     # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
     start = of.spanning.match(folded) if of.spanning is not None else None
     kind = _KIND.search(folded)
@@ -223,7 +310,10 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     only = _PART.search(folded)
     if only is not None:
         out += _spelt(of, [only.group(1)])
-    for part in parts:
+    thing, _, ornament = folded.partition(" ")
+    if ornament and IDEOGRAPH.match(thing) and IDEOGRAPH.match(ornament) and thing in of.by_word:
+        out.append(thing)  # 硯箱 猿月取蒔絵: a Japanese catalogue may name the thing first, and then what is on it
+    for part in _parts(folded):
         found = WORD.findall(part)
         if len(found) > 1 and found[-1] in _ON_WALLS and found[-2] in of.by_word and _relief(of, found[-2]):
             found.pop()
@@ -232,6 +322,17 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
                 if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
                     out.append(word)
     return tuple(out)
+
+
+def _parts(folded: str) -> Iterator[str]:
+    """Yield the parts of a name in which its thing may stand; none behind a word for what it has or is made of."""
+    at, behind = 0, ""
+    for mark in (*BREAK.finditer(folded), None):
+        part = folded[at : len(folded) if mark is None else mark.start()]
+        if not (_BESIDE.fullmatch(behind) or (behind.strip().isalpha() and _STUFF.search(part))):
+            yield part
+        if mark is not None:
+            at, behind = mark.end(), mark.group()
 
 
 @lru_cache(maxsize=4096)

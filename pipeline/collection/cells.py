@@ -27,6 +27,9 @@ _NOTED = re.compile(r"\s*(?P<number>[^()]*\d[^()]*?)\s*(?P<note>\([^()\d]*[^\W\d
 _INFINITE = re.compile(r"[+-]?inf(inity)?", re.IGNORECASE)
 _LONGEST_NUMBER = 40
 _LONGEST_WRITTEN = 200
+_LONGEST_OPENING = 160
+_SENTENCE = re.compile(r"(?<=\w{3})[.!?]\s|[;。；\n\r]")
+"""Where the first sentence of a text ends; "c. 1900" and "St. Anne" go on."""
 _MOST_POINTS = 1000
 _BREAKS = re.compile("[\t\n\v\f\r\x85\u2028\u2029]+")
 # The C0 and C1 controls; and the marks that turn the direction of all text that follows, also outside of the cell.
@@ -147,7 +150,8 @@ class Cells:
         str
             "" where nothing is recorded.
         """
-        parts = [self._clean(name, column, words_of(text)) for text in texts]
+        read = map(words_of, texts)
+        parts = [self._clean(name, column, _opening(text) if column.opening else text) for text in read]
         if column.first:
             parts = [next((part for part in parts if not _missing(part, column)), "")]
         text = column.separator.join(part for part in parts if part)
@@ -398,6 +402,12 @@ def _pairs(text: str, decimal: str) -> list[tuple[float, float]] | None:
     if not 0 < len(found) <= _MOST_POINTS or any(len(point) != 2 for point in found):
         return None
     return [(x, y) for x, y in found]
+
+
+def _opening(text: str) -> str:
+    """Return the first sentence of a description, or as many of its first words as a name may have."""
+    first = _SENTENCE.split(text.strip(_SPACE), maxsplit=1)[0]
+    return first if len(first) <= _LONGEST_OPENING else first[:_LONGEST_OPENING].rpartition(" ")[0]
 
 
 def _missing(text: str, column: ColumnMap) -> bool:

@@ -31,6 +31,7 @@ from pipeline.collection.guessing.fields import (
     tells_display,
 )
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named, unit_in
+from pipeline.collection.guessing.orders import order_of
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -40,6 +41,7 @@ from pipeline.collection.guessing.source import (
     source_of,
     workbook,
 )
+from pipeline.collection.guessing.what import named_by
 from pipeline.collection.mapping import MAPPABLE, PRESETS, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.places import parted
@@ -183,6 +185,14 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     able = candidates(columns)
     _add_misspelt(columns, able, told)
     found = _chosen(name, columns, able, told)
+    naming = named_by(able, found, told.choices)
+    described = naming is not None and naming is not found.get("title")
+    if naming is not None:
+        found["object_name"] = naming
+        told.doubts.append(
+            f"no column is called for what things are: {naming.name!r} is taken to name them"
+            f"{', by its first sentence' * described}; --choose object_name=- leaves that"
+        )
     if not any(key in found and found[key].filled for key in _NAMING):
         told.doubts.append(
             "no column says what the objects are: each is taken for a thing that stands; --choose object_name=COLUMN "
@@ -225,6 +235,10 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     second = None if "object_number" in told.choices else _second_number(columns, found)
     writer = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both, second)
     fields, used = writer.mapped(found)
+    if described and naming is not None and "object_name" in fields:
+        fields["object_name"]["opening"] = True
+        # Sizes may stand in its other sentences.
+        used = [column for column in used if column is not naming]
     document["columns"] = fields
     _cases_in_places(fields, [column for column in (found.get("gallery"), usual) if column is not None], told)
     texts = texts_among(columns, used)
@@ -246,6 +260,10 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
         if len(units) == 1:
             document["dimensions"]["unit"] = units.pop()
+        order, said = order_of(texts)
+        if order:
+            document["dimensions"]["order"] = list(order)
+        told.doubts += [said] * bool(said)
     taken = {id(column) for column in (*used, *texts)}
     left = [column for column in columns if id(column) not in taken and column.filled]
     lost = [one for one in left if is_length(one.name) or (one.numeric and is_side(one.name))]

@@ -146,6 +146,9 @@ class ColumnMap(MappingPart):
         description='Of the gallery: its texts name cases, plinths and shelves besides, "Gallery 1, case 3", or how a '
         'thing is held, "Atrium, hung overhead"; that part tells it, and the gallery goes without.',
     )
+    opening: bool = Field(
+        default=False, description="Of a description only its first sentence counts, which says what a thing is."
+    )
     optional: bool = Field(default=False, description="The file may lack this column.")
 
     @property
@@ -383,6 +386,8 @@ def _fault(field: str, column: ColumnMap) -> str:
         return f"unit is for lengths ({', '.join(LENGTHS)}) and masses ({', '.join(MASSES)}) only; leave it out"
     if column.columns and kind != "text" and column.unit != WRITTEN:
         return f"only texts can be joined from several columns, this is a {kind}; name one column"
+    if column.opening and kind != "text":
+        return f"opening is for texts, this is a {kind}; leave it out"
     if kind == "polygon" and (column.values or column.unit == WRITTEN):
         return f"a polygon needs a unit of {', '.join(LENGTHS)}, and no values; leave out {WRITTEN!r} and values"
     if field in REQUIRED and column.optional:

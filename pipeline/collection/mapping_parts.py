@@ -40,6 +40,11 @@ class Texts(MappingPart):
         description="Language of the texts (en, fr, de, nl, it, es, pt, ro, el, tr, pl, cs, hu, ru), which settles "
         "short labels, L. or D.; without it the words of each text do.",
     )
+    order: tuple[Literal["height", "width", "depth", "length", "diameter"], ...] = Field(
+        default=(),
+        description="What numbers without a label are by their order, where it is not height, width, depth: such as "
+        '["length", "width", "height"].',
+    )
     framed: bool = Field(default=True, description="Whether works in frames hang in them: then the frame counts.")
     optional: bool = Field(default=False, description="The source may lack these columns.")
 

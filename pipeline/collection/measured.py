@@ -121,7 +121,7 @@ def fill(
                 values,
                 given,
                 cells,
-                parse(text, default_unit=mapping.unit, decimal=decimal, language=mapping.language),
+                parse(text, default_unit=mapping.unit, decimal=decimal, language=mapping.language, order=mapping.order),
                 mapping,
                 texts_hold,
             )

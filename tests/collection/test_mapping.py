@@ -59,6 +59,11 @@ FAULTS = {
     ),
     "sum of texts": ('column = "title"', 'columns = ["a", "b"], units = ["ft", "in"]', "units needs one of none"),
     "first of one column": ('column = "title"', 'column = "title", first = true', "first is for texts"),
+    "opening of a number": (
+        'column = "height", unit = "in"',
+        'column = "height", unit = "in", opening = true',
+        "opening is for texts",
+    ),
     "missing number of a text": ('column = "title"', 'column = "title", missing = [0.0]', "must hold texts, in quotes"),
     "missing that is no number": ("[0.0,", "[nan,", "finite"),
     "optional number": ('column = "number"', 'column = "number", optional = true', "leave out optional"),

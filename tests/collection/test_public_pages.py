@@ -23,6 +23,8 @@ FOLDER = Path(__file__).parents[1] / "data" / "collections"
 PLAIN = re.compile(r"(its )?[\w ]+(, which lies in plan)?, of the object itself;")
 """How a note of a number begins that nothing more is said of."""
 NEAR = 0.006
+UNFOUND = ("rmg_images",)
+"""Of a file of one row, whose sizes are taken for its numbers."""
 REACHED = {"learn": (38, 53, 53), "held": (61, 70, 71)}
 """Heights, classes and manners of support right of 53 and 76 rows, as reached; less is a loss."""
 
@@ -42,7 +44,10 @@ def rows_of(part: str, pages: str = "public_pages") -> list[tuple[dict[str, str]
             if mark["file"] == name:
                 number = mark["number"]
                 able = (number, number.split(" ; ")[0], *cells[number])
-                found.append((mark, next(items[one] for one in able if one in items)))
+                one = next((items[one] for one in able if one in items), None)
+                assert one is not None or name in UNFOUND, (name, number)
+                if one is not None:
+                    found.append((mark, one))
     return found
 
 
@@ -108,8 +113,52 @@ def test_things_of_forty_more_sites(part: str) -> None:
     assert all(item.on_display == (mark["display"] == "1") for mark, item in rows if mark["display"] in "01")
 
 
+SIXTY = {"learn": (76, 36, 76, 80, 0), "held": (71, 39, 71, 77, 4)}
+"""Heights (of 80 and 78), plans (of 41 and 44), classes and manners of support (of 81 each) right; heights unsaid."""
+UNSAID = ("islenzkur", "raiz")
+"""Sizes in a description that no column of sizes stands beside; metres in a column of centimetres."""
+
+
+def is_plan(mark: dict[str, str], item: Item) -> bool:
+    """Whether the sides in plan are those that were marked; of a round thing one is enough."""
+    got = sorted(side for side in (item.width_m, item.depth_m) if side is not None)
+    for able in mark["plan_cm"].split("|"):
+        want = sorted(float(one) / 100 for one in able.split("x") if one)
+        if len(got) == 1 and len(want) == 2 and want[0] == want[1]:
+            want.pop()
+        if got == pytest.approx(want, rel=NEAR, abs=ROUNDED):
+            return True
+    return False
+
+
+@pytest.mark.parametrize("part", SIXTY)
+def test_things_of_ninety_more_tables(part: str) -> None:
+    """What is said to be 90 % sure is right, and whatever is not as marked is said but for two tables."""
+    rows = rows_of(part, "sixty_sites")
+    heights, plans, classes, manners, open_ = SIXTY[part]
+    right, unsaid = 0, []
+    for mark, item in rows:
+        if mark["height_cm"] == "*":
+            continue
+        able = [float(one) / 100 for one in re.split(r"[|?]", mark["height_cm"].strip("-")) if one]
+        near = any(item.height_m == pytest.approx(one, rel=NEAR, abs=ROUNDED) for one in able)
+        none = item.height_m is None and (("?" in mark["height_cm"] and is_said(item)) or mark["height_cm"] == "-")
+        right += near or none
+        if not (near or none or is_said(item)):
+            unsaid.append(mark["file"])
+    assert right >= heights
+    assert sum(is_plan(mark, item) for mark, item in rows if mark["plan_cm"] not in ("", "*")) >= plans
+    assert len(unsaid) <= open_
+    assert set(unsaid) <= set(UNSAID)
+    taken = [(mark["classes"].split("|"), classify(item)) for mark, item in rows]
+    assert sum(scene.object_class in able for able, scene in taken) >= classes
+    assert sum(MANNER[scene.object_class] in {MANNER[one] for one in able} for able, scene in taken) >= manners
+    assert all(scene.object_class in able for able, scene in taken if scene.chances and scene.chances[0][1] >= 0.9)
+    assert all(item.on_display == (mark["display"] == "1") for mark, item in rows if mark["display"] in "01")
+
+
 def test_names_of_things_in_twelve_languages() -> None:
-    """Of 3,879 names at least 93 % are taken for the class that was marked, and 95 % for its manner of support.
+    """Of 3,879 names at least 94 % are taken for the class that was marked, and 95 % for its manner of support.
 
     That is 1.5 % below what is reached. Words were added to the table for the names that it had not known.
     """
@@ -124,7 +173,7 @@ def test_names_of_things_in_twelve_languages() -> None:
         right[row["language"]] += taken in able
         manners += MANNER[taken] in {MANNER[one] for one in able}
     assert len(rows) == 3879
-    assert sum(right.values()) / len(rows) >= 0.93
+    assert sum(right.values()) / len(rows) >= 0.94
     assert manners / len(rows) >= 0.955
     assert min(right[one] / many[one] for one in many) >= 0.88
 
@@ -138,6 +187,7 @@ def test_names_of_things_in_twelve_languages() -> None:
         ({"object_name": "peinture murale"}, "wall_painting"),
         ({"object_name": "gemme(s) de la couronne ; aiguière", "title": "Vase transformé en aiguière"}, "vessel"),
         ({"object_name": "alabardina"}, "mounted"),
+        ({"object_name": "硯箱 猿月取蒔絵"}, "cabinet"),
     ],
 )
 def test_names_that_were_mistaken(fields: dict[str, str], taken: str) -> None:
@@ -163,8 +213,22 @@ def test_names_that_were_mistaken(fields: dict[str, str], taken: str) -> None:
         ),
         ({"title": "Untitled", "medium": "painted wood", "height_m": 1.09, "width_m": 0.58, "depth_m": 0.22}, "statue"),
         ({"object_name": "telefon ścienny"}, "relief"),
+        # A sculpture that is called a bust is one; and a title that says what its thing is made of names it.
+        (
+            {"object_name": "sculpture", "title": "Bust of a man", "height_m": 0.6, "width_m": 0.4, "depth_m": 0.3},
+            "bust",
+        ),
+        ({"title": "Πήλινο ειδώλιο", "height_m": 0.12, "width_m": 0.05, "depth_m": 0.04}, "figurine"),
         ({"object_name": "Dragkista, Kommóða", "height_m": 0.96, "width_m": 1.09, "depth_m": 0.49}, "cabinet"),
     ],
 )
 def test_things_that_were_mistaken(fields: dict[str, str | float], taken: str) -> None:
     assert classify(replace(Item("1", "Room"), **fields)).object_class == taken  # type: ignore[arg-type]
+
+
+def test_of_several_names_in_a_cell_none_is_sure() -> None:
+    """A museum that writes what a thing may be, from the general to the special, has not said which it is."""
+    one = classify(replace(Item("1", "Room", height_m=0.3, width_m=0.2), object_name="statuette"))
+    many = classify(replace(Item("1", "Room", height_m=0.3, width_m=0.2), object_name="statuette; relief"))
+    assert one.chances[0][1] > many.chances[0][1]
+    assert many.chances[0][1] < 0.9

@@ -193,6 +193,10 @@ def _reason(group: list[DimensionPart], alike: int, framed: bool) -> str:
     return what
 
 
+_USUAL = ("height", "width", "depth")
+"""The order of numbers that nothing labels, where their source writes no other."""
+
+
 def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
     out: dict[str, Choice] = {}
 
@@ -207,13 +211,15 @@ def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
     widest = [p for p in group if p.dimension == "diameter"]
     if len(widest) > 1:
         take("diameter", max(widest, key=lambda p: p.value or 0.0), f"diameter, the largest of {len(widest)}")
+    assumed = tuple(part.dimension for part in group if part.assumed)
+    usual = "length" not in assumed and (len(assumed) < len(_USUAL) or assumed == _USUAL)
+    by = f", by the order {' x '.join(_USUAL if usual else assumed)}"
     for part in group:
         if part.dimension in ("height", "width", "depth", "diameter"):
-            order = ", by the order height x width x depth" if part.assumed else ""
-            take(part.dimension, part, f"{part.dimension}{order}")
+            take(part.dimension, part, f"{part.dimension}{by * part.assumed}")
     for part in group:
         if part.dimension == "length":
-            take("depth" if "width" in out else "width", part, "length, which lies in plan")
+            take("depth" if "width" in out else "width", part, f"length, which lies in plan{by * part.assumed}")
         elif part.dimension == "thickness" and not {"height", "diameter"} <= set(out):  # of a round wall
             take("depth", part, "thickness")
         elif part.dimension == "circumference":
@@ -263,6 +269,7 @@ def _base(group: list[DimensionPart]) -> dict[str, Choice]:
 
 def _mass(dimensions: Dimensions, chosen: list[DimensionPart]) -> Choice | None:
     masses = [p for p in dimensions.parts if p.dimension == "weight" and p.value is not None and p.value > 0.0]
+    masses = [p for p in masses if not p.name.endswith("bore")]  # a gun of ten pounds shoots as much
     if not masses:
         return None
     group = chosen[0].group if chosen else -1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from pipeline.collection.dimensions.labels import labelled
 from pipeline.collection.dimensions.lexicon import label_words, languages, meanings, units
@@ -37,7 +38,9 @@ _LEGEND = re.compile(
 """The same before numbers that joins part already: height/width 3 1/2 x 4 in."""
 
 
-def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", language: str = "") -> Dimensions:
+def parse(
+    text: str, *, default_unit: str | None = None, decimal: str = ".", language: str = "", order: Sequence[str] = ()
+) -> Dimensions:
     """Read the text of a dimensions field.
 
     Parameters
@@ -51,6 +54,9 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
     language : str
         The language of the source, of two letters, which settles short labels such as L. and A.; "" leaves that to the
         words of the text.
+    order : sequence of str
+        The dimensions that numbers without any have by their order, where the source writes another than height x
+        width x depth.
 
     Returns
     -------
@@ -111,7 +117,7 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
                 message = f"{q.word} is read as {q.num / q.den:.10g}, its point as a mark of thousands"
                 notes.append(DimensionNote("ambiguous", message, q.start, q.end))
     parts = tuple(
-        _part(group, number, q) for number, group in enumerate(_ordered(groups, notes)) for q in group.quantities
+        _part(group, number, q) for number, group in enumerate(_ordered(groups, notes, order)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
 
@@ -204,7 +210,7 @@ def _weighed(group: Group, text: str, notes: list[DimensionNote]) -> None:
             q.dimension = "weight" if q.kind == "mass" else "thickness" if thick else "unlabelled"
 
 
-def _ordered(groups: list[Group], notes: list[DimensionNote]) -> list[Group]:
+def _ordered(groups: list[Group], notes: list[DimensionNote], own: Sequence[str]) -> list[Group]:
     """Give numbers without a written dimension theirs, by their order within a run."""
     first: tuple[int, int] | None = None
     for group in groups:
@@ -215,13 +221,15 @@ def _ordered(groups: list[Group], notes: list[DimensionNote]) -> list[Group]:
                 run[0].dimension = "unlabelled"
                 continue
             used = {q.dimension for q in run}
-            order = iter([d for d in _ORDERS["length" if "length" in used else ""] if d not in used])
+            usual = _ORDERS["length" if "length" in used else ""]
+            order = iter([d for d in (usual if used - {""} or not own else own) if d not in used])
             for q in run:
                 if not q.dimension:
                     q.dimension, q.assumed = next(order, "unlabelled"), True
             first = first or (run[0].start, run[-1].end)
     if first:
-        notes.append(DimensionNote("order", _CONVENTION, *first))
+        said = f"the order is taken as {' x '.join(own)}, as this source writes it" if own else _CONVENTION
+        notes.append(DimensionNote("order", said, *first))
     return groups
 
 

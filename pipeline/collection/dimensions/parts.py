@@ -4,12 +4,27 @@ from __future__ import annotations
 
 FRAMED = frozenset({"framed", "frame"})
 DETAILS = frozenset(
-    {"rim", "seat", "lid", "top", "mouth", "handle", "stem", "neck", "cord", "label", "crate", "storage", "opening"}
+    {
+        "rim",
+        "seat",
+        "lid",
+        "top",
+        "mouth",
+        "handle",
+        "stem",
+        "neck",
+        "cord",
+        "label",
+        "crate",
+        "storage",
+        "opening",
+        "bore",
+    }
 )
 BASES = frozenset({"base", "foot", "feet", "plinth", "pedestal", "bottom"})
 ROUND = frozenset({"foot", "rim", "mouth", "neck", "opening"})
 MOUTHS = frozenset({"rim", "mouth"})
-_HOLLOW = "inside"
+_HOLLOW, _BORE = "inside", "bore"
 _SENTENCE = 6
 """Words beyond which what stands before numbers is no name: "net dimensions exclude lid, stand and mouldings"."""
 _WHOLE = ("with ", "without ")
@@ -28,6 +43,8 @@ def is_opening(name: str) -> bool:
 def is_detail(name: str) -> bool:
     """Say whether a name is that of a part whose size is not the object's."""
     words = name.split()
+    if words[-1:] == [_BORE]:
+        return True  # however much is said before it, it says what the number is of
     if len(words) > _SENTENCE:
         return False
     return not name.startswith(_WHOLE) and (name == _HOLLOW or bool(DETAILS.intersection(words)))

@@ -86,7 +86,7 @@ _SIZE = r"\d{1,4}(?:[.,]\d{1,2})?"
 _SLASHED = re.compile(
     rf"(?<![\d/.,])(?<!\d{_BLANK}){_SIZE}(?:{_BLANK}?/{_BLANK}?{_SIZE}){{1,3}}"
     rf"(?={_BLANK}?(?P<unit>cm\b|mm\b|m\b(?!\.)|in(?:ch(?:es)?)?\b|[\"”″]|x{_BLANK}?\d))"
-    rf"(?=(?P<beside>(?:{_BLANK}?x{_BLANK}?{_SIZE}){{1,2}}{_BLANK}?[cm]m\b)?)",
+    rf"(?=(?P<beside>(?:{_BLANK}?x{_BLANK}?{_SIZE}){{1,2}}{_BLANK}?(?:[cm]m\b|in\b|inch|[\"”″]))?)",
     re.IGNORECASE,
 )
 """Sizes with strokes between them, "40/30 cm", or numbers with fractions, "3/4 cm", "11/5/8 in."."""
@@ -96,6 +96,8 @@ _PARTS = frozenset({"2", "3", "4", "5", "8"})
 """What a fraction of a metric unit has below its stroke."""
 _HALVED = frozenset({"2", "4", "8", "16", "32", "64"})
 """The same of inches."""
+_IN_INCHES = _HALVED | {"3", "5", "6", "10", "12", "20", "100"}
+"""What a fraction of an inch may have there at all: 30/40 is none."""
 _EXTREME = re.compile(r"(\w{1,4})(max|min)")
 """A label and its qualifier in one word: Dmax, Hmin."""
 _MIXED = re.compile(rf"(\d[\d,]*)[^\d{_V}]*(?:(\d+)\D+(\d+)|([{_V}]))")
@@ -215,9 +217,12 @@ def _parted(slashed: re.Match[str]) -> str:
     text: str = slashed[0]
     *before, above, below = (piece.strip() for piece in text.split("/"))
     unit = slashed["unit"].lower()
-    beside = bool(slashed["beside"])
-    metric, inches = unit.endswith("m") or beside, unit.startswith("in")
+    beside = slashed["beside"] or ""
+    metric = unit.endswith("m") or beside.lower().endswith("m")
+    inches = unit.startswith("in") or bool(beside)
     whole = above.isdigit() and below.isdigit() and int(above) < int(below)
+    if not before and inches and not metric and whole and below not in _IN_INCHES:
+        metric = True  # 30/40 x 20 in. goes from 30 to 40
     if not before and (not metric or (whole and (above == "1" or below in _PARTS))):
         return text  # 3/4 cm; of inches also 71/2, which lost its blank
     if len(before) == 1 and not metric and whole and below in _HALVED and before[0].isdigit():
@@ -227,7 +232,7 @@ def _parted(slashed: re.Match[str]) -> str:
     label = _BEFORE.search(slashed.string, 0, slashed.start())
     of_one = label is not None and _is_side(label[1].lower()) and not label[0].startswith(("/", "x", "×"))
     # "D. 10/12 cm", "30/40 x 20 cm": from one to the other.
-    return text.replace("/", "-" if (of_one or beside) and not before else "x")
+    return text.replace("/", "-" if (of_one or bool(beside)) and not before else "x")
 
 
 def _is_side(word: str) -> bool:

@@ -22,6 +22,9 @@ from pipeline.tables.rows import Entries, checked
 TEXTS = "dimensions"
 """What a column of texts with dimensions is called here; it is no field of the record."""
 
+DESCRIPTION, ARTIST = "description", "artist"
+"""The same of a description, which says what a thing is where nothing else does, and of who made a picture."""
+
 LENGTH = "length_m"
 """The same of a length: it is the width, or else the depth, whichever has no column."""
 
@@ -57,6 +60,12 @@ _REFERENCE = re.compile(r"(?<=[a-z])(?:Ref|Grp|Tab)$")
 """Behind the name of what is told by another table."""
 _SIDE = re.compile(r"([^(（\[]+)[(（\[]([^)）\]]+)[)）\]]")
 """The name of a column that says in brackets what of something it is."""
+LEGEND = re.compile(
+    r"(?<![^\W_])(?:(?:[^\W\d_x×]{1,2}\.?\s*[x×]\s*){1,2}[^\W\d_x×]{1,2}(?![^\W_])"
+    r"|(?:[^\W\d_]{3,}\.?\s+[x×]\s+){1,2}[^\W\d_]{3,})",
+    re.IGNORECASE,
+)
+"""What the head of a column says of the order: L x B x H, alto x ancho x fondo."""
 _OTHER = re.compile(r"[^\w]+|_")
 _SHORT = 4
 """Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
@@ -152,7 +161,7 @@ _USUAL = frozenset({"home", "normal", "usual", "default", "permanent", "stamm", 
 
 
 def _mappable(field: str) -> str:
-    if field not in (*MAPPABLE, TEXTS, LENGTH):
+    if field not in (*MAPPABLE, TEXTS, LENGTH, DESCRIPTION, ARTIST):
         raise InputError(f"is {field!r}, which is no field that a column can be mapped to")
     return field
 
@@ -394,6 +403,11 @@ def _forms(name: str) -> Iterator[str]:
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:
         yield plain(outside)
+        yield plain(unit_in(outside)[0])
+    # "Dimensions LxWxH mm": of what order the sizes are.
+    unordered = LEGEND.sub(" ", name)
+    if unordered.strip() and unordered != name:
+        yield plain(unit_in(unordered.strip())[0])
     # The first of several columns of one name: "Denomination_1", "Material 1".
     first = _FIRST.fullmatch(name.strip())
     if first is not None:
