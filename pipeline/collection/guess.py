@@ -41,7 +41,7 @@ from pipeline.collection.guessing.source import (
     source_of,
     workbook,
 )
-from pipeline.collection.guessing.what import named_by
+from pipeline.collection.guessing.what import describing, named_by
 from pipeline.collection.mapping import MAPPABLE, PRESETS, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.places import parted
@@ -187,8 +187,11 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     found = _chosen(name, columns, able, told)
     naming = named_by(able, found, told.choices)
     described = naming is not None and naming is not found.get("title")
+    about = None if naming is None or described or "title" in told.choices else describing(able, naming)
     if naming is not None:
         found["object_name"] = naming
+        if about is not None:
+            found["title"] = about
         told.doubts.append(
             f"no column is called for what things are: {naming.name!r} is taken to name them"
             f"{', by its first sentence' * described}; --choose object_name=- leaves that"
@@ -235,10 +238,11 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     second = None if "object_number" in told.choices else _second_number(columns, found)
     writer = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both, second)
     fields, used = writer.mapped(found)
-    if described and naming is not None and "object_name" in fields:
-        fields["object_name"]["opening"] = True
+    saying, field = (about, "title") if about is not None else (naming if described else None, "object_name")
+    if saying is not None and field in fields:
+        fields[field]["opening"] = True
         # Sizes may stand in its other sentences.
-        used = [column for column in used if column is not naming]
+        used = [column for column in used if column is not saying]
     document["columns"] = fields
     _cases_in_places(fields, [column for column in (found.get("gallery"), usual) if column is not None], told)
     texts = texts_among(columns, used)

@@ -432,3 +432,18 @@ def test_words_for_how_things_are_held_are_given_their_meanings(tmp_path: Path) 
         "freestanding",
     ]
     assert any("'bolted' as fastened" in doubt for doubt in made.doubts)
+
+
+def test_a_name_beside_a_description_says_what_a_thing_is(tmp_path: Path) -> None:
+    export = tmp_path / "export.csv"
+    rows = ['1,Telescope,Refracting telescope on tripod. Bought 1902.,"brass, mahogany",H 160 cm,Hall 1',
+            '2,Screen,Pair of six-panel folding screens,"ink and gold on paper",171 x 372 cm,Hall 2']  # fmt: skip
+    export.write_text("\n".join(["Accession,Name,Description,Materials,Size,Gallery", *rows]), encoding="utf-8")
+    told = guess(export)
+    assert (told.mapping.columns["object_name"].column, told.mapping.columns["title"].column) == ("Name", "Description")
+    first, second = read_items(export, told.mapping).items
+    assert (first.object_name, first.title) == ("Telescope", "Refracting telescope on tripod")
+    assert second.object_name == "Screen"
+    # Beside an artist a name is a title.
+    export.write_text(export.read_text(encoding="utf-8").replace("Materials", "Artist"), encoding="utf-8")
+    assert guess(export).mapping.columns["title"].column == "Name"
