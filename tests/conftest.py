@@ -85,6 +85,22 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     gc.freeze()
 
 
+def made_once(name: str, make: Callable[[Path], object]) -> Path:
+    """Return a folder that all processes of the session have in common: the first that wants it makes it.
+
+    Nobody changes what is in it, and who would work with it copies it.
+    """
+    folder = Path(os.environ[SHARED]) / name
+    made = folder.with_suffix(".made")
+    with FileLock(folder.with_suffix(".lock")):
+        if not made.exists():
+            rmtree(folder, ignore_errors=True)
+            folder.mkdir()
+            make(folder)
+            made.touch()
+    return folder
+
+
 @contextmanager
 def postgresql_server() -> Iterator[Any]:
     """Run a PostgreSQL server in a temporary folder."""
@@ -130,15 +146,13 @@ def demo_folder() -> Path:
     from pipeline.tools.demo import demo
     from tests.museum import DATABASE, in_common, with_tables
 
-    folder = Path(os.environ[SHARED]) / "demo"
-    with FileLock(folder.with_suffix(".lock")):
-        if not (folder / "reports" / "latest").exists():
-            folder.mkdir(exist_ok=True)
-            in_common(folder)
-            with_tables(folder / DATABASE)
-            _take_over(Path(__file__).parents[1] / "kouros-demo", folder)
-            demo(folder, Console(quiet=True))
-    return folder
+    def make(folder: Path) -> None:
+        in_common(folder)
+        with_tables(folder / DATABASE)
+        _take_over(Path(__file__).parents[1] / "kouros-demo", folder)
+        demo(folder, Console(quiet=True))
+
+    return made_once("demo", make)
 
 
 def _take_over(demonstration: Path, folder: Path) -> None:

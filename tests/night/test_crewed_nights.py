@@ -26,7 +26,7 @@ OBJECTS = vases(galleries=8, each=2)
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """The museum after a night of this process alone, whose BLAS has two threads, where that of workers has one."""
-    settings = museum_of(tmp_path_factory.mktemp("crews") / "alone", OBJECTS)
+    settings = museum_of(tmp_path_factory.mktemp("crews") / "alone", OBJECTS, threads=True)
     with threadpool_limits(limits=2, user_api="blas"):
         night(settings)
     return settings
