@@ -21,6 +21,7 @@ import pytest
 from filelock import FileLock
 from hypothesis import settings as examples
 
+from pipeline.execute.memory import RARELY
 from tests.warm import NIGHTLY
 
 # Machines that others share are slow at times: no example fails for that.
@@ -36,6 +37,8 @@ ROOMY = 8e9
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    # As the command does: to look for garbage every 700 objects takes a tenth of all tests.
+    gc.set_threshold(*RARELY)
     if not hasattr(config, "workerinput"):
         # Where nothing that is compiled is kept, each process that is started cold compiles all of Kouros.
         if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
