@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import multiprocessing as mp
 import queue
-from contextlib import suppress
 from multiprocessing.queues import Queue
 from typing import Any
 
@@ -22,7 +21,6 @@ from pipeline import Motion, respond
 from pipeline.cli import kouros
 from pipeline.models import MODELS
 from pipeline.quantities import G
-from pipeline.records import Model
 from pipeline.verification import self_measurement as numerics
 from pipeline.verification.extremes import complaint, motions, pushed
 
@@ -35,55 +33,28 @@ START = 60.0
 
 
 def work(answers: Queue[Any]) -> None:
-    """Run every case of every model and put (case, problem or "") into the queue.
-
-    The rows of a model go together; where one is refused, each goes alone, so that no other is left out for it.
-    """
+    """Run every case of every model and put (case, problem or "") into the queue."""
     shaken = motions()
     answers.put(("ready", ""))
     for model, directions in pushed():
         extra = {} if directions is None else {"directions": directions}
-        columns = {name: list(values) for name, values in model.trials.extremes.items()}
-        rows = [
-            {name: [values[row]] for name, values in columns.items()}
-            for row in range(len(next(iter(columns.values()))))
-        ]
+        columns = model.trials.extremes
         for label, motion in shaken.items():
-            for tail in (None, 0.0, 5.0) if label == "plain" else (None,):
-                told = f"{extra} under {label}, tail {tail}"
-                try:
-                    asked(answers, model, motion, tail, columns, extra, told)
-                except ValueError:
-                    for one in rows:
-                        with suppress(ValueError):
-                            asked(answers, model, motion, tail, one, extra, told)
+            for row in range(len(next(iter(columns.values())))):
+                one = {k: v[row] for k, v in columns.items()}
+                for tail in (None, 0.0, 5.0) if label == "plain" else (None,):
+                    case = f"{model.name} {one} {extra} under {label}, tail {tail}"
+                    answers.put((case, None))
+                    try:
+                        table = respond(model.name, motion, tail=tail, **one, **extra)
+                    except ValueError:
+                        answers.put((case, ""))
+                        continue
+                    except Exception as problem:  # noqa: BLE001
+                        answers.put((case, repr(problem)))
+                        continue
+                    answers.put((case, complaint(model, table.iloc[0])))
     answers.put(("done", ""))
-
-
-def asked(
-    answers: Queue[Any],
-    model: Model,
-    motion: Motion,
-    tail: float | None,
-    columns: dict[str, list[float]],
-    extra: dict[str, int],
-    told: str,
-) -> None:
-    """Run some rows of a model together, and put each into the queue.
-
-    raises : ValueError where one of them is refused
-    """
-    answers.put((f"{model.name} {columns} {told}", None))
-    try:
-        table = respond(model.name, motion, tail=tail, **columns, **extra)
-    except ValueError:
-        raise
-    except Exception as problem:  # noqa: BLE001
-        answers.put((f"{model.name} {columns} {told}", repr(problem)))
-        return
-    for row in range(len(table)):
-        one = {name: values[row] for name, values in columns.items()}
-        answers.put((f"{model.name} {one} {told}", complaint(model, table.iloc[row])))
 
 
 def test_nothing_hangs_or_is_nan_in_silence() -> None:
