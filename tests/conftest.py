@@ -14,7 +14,7 @@ from importlib import import_module
 from itertools import count
 from pathlib import Path
 from shutil import disk_usage, rmtree
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 import pytest
@@ -23,6 +23,9 @@ from hypothesis import settings as examples
 
 from pipeline.execute.memory import RARELY
 from tests.warm import NIGHTLY
+
+if TYPE_CHECKING:
+    from pipeline.records import RunRecord
 
 # Machines that others share are slow at times: no example fails for that.
 examples.register_profile("kouros", deadline=None)
@@ -179,6 +182,16 @@ def _take_over(demonstration: Path, folder: Path) -> None:
             connection.execute("ATTACH ? AS made", (f"file:{quote(str(made))}?mode=ro",))
             with connection:
                 connection.execute("INSERT INTO result SELECT * FROM made.result")
+
+
+@pytest.fixture(scope="session")
+def demo_record(demo_folder: Path) -> RunRecord:
+    """What the demonstration found, read once."""
+    from pipeline.collection.database import open_database
+    from pipeline.store.runs import load_run
+    from tests.museum import DATABASE
+
+    return load_run(open_database(demo_folder / DATABASE))
 
 
 @pytest.fixture(scope="session")
