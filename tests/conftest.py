@@ -14,14 +14,18 @@ from importlib import import_module
 from itertools import count
 from pathlib import Path
 from shutil import disk_usage, rmtree
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 import pytest
 from filelock import FileLock
 from hypothesis import settings as examples
 
+from pipeline.execute.memory import RARELY
 from tests.warm import NIGHTLY
+
+if TYPE_CHECKING:
+    from pipeline.records import RunRecord
 
 # Machines that others share are slow at times: no example fails for that.
 examples.register_profile("kouros", deadline=None)
@@ -36,6 +40,8 @@ ROOMY = 8e9
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    # As the command does: to look for garbage every 700 objects takes a tenth of all tests.
+    gc.set_threshold(*RARELY)
     if not hasattr(config, "workerinput"):
         # Where nothing that is compiled is kept, each process that is started cold compiles all of Kouros.
         if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
@@ -85,6 +91,22 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     gc.freeze()
 
 
+def made_once(name: str, make: Callable[[Path], object]) -> Path:
+    """Return a folder that all processes of the session have in common: the first that wants it makes it.
+
+    Nobody changes what is in it, and who would work with it copies it.
+    """
+    folder = Path(os.environ[SHARED]) / name
+    made = folder.with_suffix(".made")
+    with FileLock(folder.with_suffix(".lock")):
+        if not made.exists():
+            rmtree(folder, ignore_errors=True)
+            folder.mkdir()
+            make(folder)
+            made.touch()
+    return folder
+
+
 @contextmanager
 def postgresql_server() -> Iterator[Any]:
     """Run a PostgreSQL server in a temporary folder."""
@@ -130,15 +152,13 @@ def demo_folder() -> Path:
     from pipeline.tools.demo import demo
     from tests.museum import DATABASE, in_common, with_tables
 
-    folder = Path(os.environ[SHARED]) / "demo"
-    with FileLock(folder.with_suffix(".lock")):
-        if not (folder / "reports" / "latest").exists():
-            folder.mkdir(exist_ok=True)
-            in_common(folder)
-            with_tables(folder / DATABASE)
-            _take_over(Path(__file__).parents[1] / "kouros-demo", folder)
-            demo(folder, Console(quiet=True))
-    return folder
+    def make(folder: Path) -> None:
+        in_common(folder)
+        with_tables(folder / DATABASE)
+        _take_over(Path(__file__).parents[1] / "kouros-demo", folder)
+        demo(folder, Console(quiet=True))
+
+    return made_once("demo", make)
 
 
 def _take_over(demonstration: Path, folder: Path) -> None:
@@ -162,6 +182,16 @@ def _take_over(demonstration: Path, folder: Path) -> None:
             connection.execute("ATTACH ? AS made", (f"file:{quote(str(made))}?mode=ro",))
             with connection:
                 connection.execute("INSERT INTO result SELECT * FROM made.result")
+
+
+@pytest.fixture(scope="session")
+def demo_record(demo_folder: Path) -> RunRecord:
+    """What the demonstration found, read once."""
+    from pipeline.collection.database import open_database
+    from pipeline.store.runs import load_run
+    from tests.museum import DATABASE
+
+    return load_run(open_database(demo_folder / DATABASE))
 
 
 @pytest.fixture(scope="session")

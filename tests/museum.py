@@ -12,6 +12,9 @@ from pathlib import Path
 from pipeline.cache import CHARTS, MOTIONS, PICTURES, SPECTRA
 from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
+from pipeline.collection.mapping import load_mapping
+from pipeline.collection.reading import Reading, read_items
+from pipeline.night.importing import bundled_collection
 from pipeline.night.run import run
 from pipeline.operations.run_summary import Summary
 from pipeline.records import Furniture, Item, RunRecord
@@ -57,6 +60,12 @@ VASE_COLUMNS = (
 )  # fmt: skip
 
 
+@cache
+def carnegie() -> Reading:
+    """The bundled collection as it is read: once for all tests of a process, who only look at it."""
+    return read_items(bundled_collection(), load_mapping("carnegie"))
+
+
 OF_MOTIONS = (MOTIONS, CHARTS, PICTURES, SPECTRA)
 """What is kept of motions alone, whatever objects there are."""
 
@@ -99,8 +108,13 @@ def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief") 
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     file = folder / "kouros.toml"
     text = template(museum="Test", source="export.csv", mapping="mapping.toml", site=site)
-    file.write_text(one_thread(few_samples(text)), encoding="utf-8")
+    file.write_text(small(text), encoding="utf-8")
     return load_settings(file)
+
+
+def small(settings: str) -> str:
+    """Let the nights of settings cost as little as those of a few objects may: few samples, on one thread."""
+    return one_thread(few_samples(settings))
 
 
 def few_samples(settings: str) -> str:
@@ -178,15 +192,17 @@ def write_collection(folder: Path, objects: list[dict[str, str]]) -> None:
         writer.writerows(objects)
 
 
-def museum_of(folder: Path, objects: list[dict[str, str]], *, own_charts: bool = False) -> Settings:
-    """A museum of rows such as those of `vases`, with a copy of the bundled site."""
+def museum_of(
+    folder: Path, objects: list[dict[str, str]], *, own_charts: bool = False, threads: bool = False
+) -> Settings:
+    """A museum of rows such as those of `vases`, with a copy of the bundled site; one thread works unless all shall."""
     folder.mkdir(parents=True)
     with_tables(folder / DATABASE)
     if not own_charts:
         in_common(folder)
     write_collection(folder, objects)
     text = template(museum="Three rooms", source="collection.csv", mapping="kouros", site="site")
-    (folder / "kouros.toml").write_text(few_samples(text), encoding="utf-8")
+    (folder / "kouros.toml").write_text(few_samples(text) if threads else small(text), encoding="utf-8")
     own_site(folder)
     return load_settings(folder / "kouros.toml")
 

@@ -58,6 +58,7 @@ class DeskSite:
         self._lock = Lock()
         self._looked = 0.0
         self._run: RunFacts | None = None
+        self._kept = False
         self._read: tuple[int, ...] = ()
         self._log: dict[str, tuple[Decision, ...]] = {}
         self._words: dict[str, tuple[ErrandWord, ...]] = {}
@@ -98,10 +99,19 @@ class DeskSite:
                     self._run = RunFacts(self.workspace)
                     self.environment = environment(self._run.language)
                     self.fragment = fragments(self.environment, "desk/_fields.html")
-                    _settled()
+                    self._settle()
                     logger.info("the desk shows run %s", self._run.run_id)
                 self._looked = time.monotonic()
             return self._run
+
+    def _settle(self) -> None:
+        """Spare what is kept of a run from being looked through, again and again, for what nobody needs any more."""
+        # What was kept of the run before is garbage now; before the first there was none of it.
+        if self._kept:
+            gc.unfreeze()
+        gc.collect()
+        gc.freeze()
+        self._kept = True
 
     @property
     def state(self) -> DeskState:
@@ -158,10 +168,3 @@ class DeskSite:
         """
         run, newest = self.run, self._renew(newest)
         return self.objects.facts(run, number, self._log.get(number, ()), pictured=newest[2] > 0)
-
-
-def _settled() -> None:
-    """Spare what is kept of a run from being looked through, again and again, for what nobody needs any more."""
-    gc.unfreeze()
-    gc.collect()
-    gc.freeze()

@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.sparse import csr_matrix
-from scipy.special import logsumexp
 from threadpoolctl import threadpool_limits
 
 from pipeline.analysis.evidence import AGREES, BIAS, GALLERY, SAYING, SILENT, Weights, read_weights, shares_of, signs_of
@@ -157,15 +156,18 @@ def fit(objects: Sequence[Labelled]) -> Weights:
                 agreeing[SAYING.index(field), row, classes.index(named)] = 1.0
     ridge = np.array([_penalty(sign, classes) for sign in columns])[:, None]
     size = len(columns) * len(classes)
+    rows = np.arange(len(right))
 
     def loss(x: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
         of_sign, of_field = x[:size].reshape(len(columns), len(classes)), x[size:]
         scores = shown @ of_sign + np.tensordot(of_field, agreeing, axes=1)
-        scores -= logsumexp(scores, axis=1, keepdims=True)
+        scores -= scores.max(axis=1, keepdims=True)
         away = np.exp(scores)
-        away[np.arange(len(right)), right] -= 1.0
+        total = away.sum(axis=1)
+        value = -float(weight @ (scores[rows, right] - np.log(total)))
+        away /= total[:, None]
+        away[rows, right] -= 1.0
         away *= weight[:, None]
-        value = -float(weight @ scores[np.arange(len(right)), right])
         value += 0.5 * float(np.sum(ridge * of_sign**2)) + 0.5 * RIDGE["agree"] * float(of_field @ of_field)
         slope = shown.T @ away + ridge * of_sign
         return value, np.concatenate(

@@ -10,13 +10,11 @@ from pipeline.analysis.classify import NO_MODEL, WHEN_HELD, classify
 from pipeline.analysis.footing import bearing_of
 from pipeline.analysis.scene_parameters import material_of
 from pipeline.analysis.survey import measurable_of, measurables
-from pipeline.collection.mapping import load_mapping
-from pipeline.collection.reading import read_items
-from pipeline.night.importing import bundled_collection
 from pipeline.records import Furniture, Item, Origin, Support, times_too_thin
 from pipeline.tables import Range, Row, table
 from pipeline.tables.assumed import assumed, span
 from pipeline.tables.fill_rows import fills
+from tests import museum
 
 VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
             height_m=0.4, width_m=0.2, depth_m=0.2)  # fmt: skip
@@ -24,7 +22,7 @@ VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="p
 
 @pytest.fixture(scope="module")
 def carnegie() -> dict[str, Item]:
-    reading = read_items(bundled_collection(), load_mapping("carnegie"))
+    reading = museum.carnegie()
     return {item.object_number: item for item in reading.items}
 
 

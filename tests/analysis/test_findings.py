@@ -14,7 +14,6 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.furnished import furnished
 from pipeline.analysis.furniture import FurnitureFilter, filter_of
 from pipeline.analysis.response import respond
-from pipeline.collection.database import open_database
 from pipeline.execute import Threads
 from pipeline.motions import read_motion, read_site
 from pipeline.records import Finding, Furniture, Item, Motion, RunRecord, Support, Verdict
@@ -22,7 +21,6 @@ from pipeline.records.result import BOUNDS, DEMANDS
 from pipeline.report.pages.judging import most, spanned
 from pipeline.report.units import Units
 from pipeline.resources import resource
-from pipeline.store.runs import load_run
 
 pytestmark = pytest.mark.slow_file
 
@@ -34,8 +32,8 @@ def motions() -> tuple[Motion, ...]:
 
 
 @pytest.fixture(scope="module")
-def record(demo_folder: Path) -> RunRecord:
-    return load_run(open_database(demo_folder / "kouros.sqlite"))
+def record(demo_record: RunRecord) -> RunRecord:
+    return demo_record
 
 
 def test_an_outcome_is_told_exactly_where_the_best_demand_is_beyond_the_capacity(demo_report: Path) -> None:

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from math import exp, log, sqrt
-from pathlib import Path
 from statistics import median
 
 import numpy as np
@@ -20,12 +19,10 @@ from pipeline.analysis.fragility.scaling import FACTORS
 from pipeline.analysis.plan import plan
 from pipeline.analysis.response import respond
 from pipeline.cli.console import Console
-from pipeline.collection.database import open_database
 from pipeline.execute import Threads
 from pipeline.motions.synthesis import half_sine_pulse
 from pipeline.quantities import G
-from pipeline.records import Fragility, Furniture, Item, Motion, Support
-from pipeline.store.runs import load_run
+from pipeline.records import Fragility, Furniture, Item, Motion, RunRecord, Support
 
 pytestmark = pytest.mark.slow_file
 
@@ -320,16 +317,15 @@ def test_scatter_of_objects_is_not_that_of_buildings() -> None:
     assert (stated("record_velocity").low, stated("record_velocity").high) == (0.40, 0.50)
 
 
-def test_small_objects_of_the_demonstration_fail_where_shelf_contents_were_seen_to(demo_folder: Path) -> None:
+def test_small_objects_of_the_demonstration_fail_where_shelf_contents_were_seen_to(demo_record: RunRecord) -> None:
     """Freestanding objects below half a metre: the median of their medians is 0.30 g, beside a published 0.40 g.
 
     The published median is of things falling from shelves, ours of any harm, of which sliding too far is the most, and
     the demonstration's motions are rich in velocity: a factor of 1.5 would be no surprise, and is what is held here.
     """
-    record = load_run(open_database(demo_folder / "kouros.sqlite"))
     small = [
         a.fragilities[0].median / G
-        for a in record.assessments
+        for a in demo_record.assessments
         if a.fragilities and a.scene.support is Support.FREESTANDING and (a.scene.item.height_m or 9.0) < 0.5
     ]
     middle = median(small)

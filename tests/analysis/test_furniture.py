@@ -21,19 +21,17 @@ from pipeline.analysis.house.rule import HouseRule
 from pipeline.analysis.response import respond
 from pipeline.analysis.transmission import cascade, transmit
 from pipeline.analysis.verdicts import LevelMotions
-from pipeline.collection.mapping import load_mapping
-from pipeline.collection.reading import read_items
 from pipeline.execute import Threads
 from pipeline.mitigate.installed import InstalledMeasure, assess_above, placed
 from pipeline.mitigate.search import advise
 from pipeline.models.common import largest_push
 from pipeline.motions import read_motion
-from pipeline.night.importing import bundled_collection
 from pipeline.quantities import Array, G
 from pipeline.records import Finding, Furniture, Item, Motion, Numerics, Origin, Scene, Support, Verdict
 from pipeline.resources import resource
 from pipeline.tables.assumed import assumed
 from pipeline.tables.furniture_rows import usual_furniture
+from tests.museum import carnegie
 
 VASE = Item("1", "G", title="Vase", object_name="Vase", support=Support.FREESTANDING, height_m=0.12, width_m=0.3,
             depth_m=0.3, base_width_m=0.3, base_depth_m=0.3, cg_height_m=0.05, mass_kg=3.0, friction=0.18,
@@ -97,7 +95,7 @@ def test_the_record_comes_before_the_rule_and_the_rule_before_the_case_and_the_c
 
 def test_the_kind_alone_is_that_of_the_whole_scene() -> None:
     """Of a real collection, as its records stand, with rules of the house, and with a class that a person gave."""
-    items = read_items(bundled_collection(), load_mapping("carnegie")).items
+    items = carnegie().items
     house = rule(medium="bronze", furniture="shelf")
     for told in ({}, {"house": house}, {"decided": ("clock", "Ann")}):
         kinds = [(furniture_kind(item, **told), classify(item, **told).furniture) for item in items]  # type: ignore[arg-type]

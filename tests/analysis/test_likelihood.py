@@ -24,11 +24,8 @@ from pipeline.analysis.likelihood.shaking import FARTHEST
 from pipeline.analysis.survey import telling_requests
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions
-from pipeline.collection.mapping import load_mapping
-from pipeline.collection.reading import read_items
 from pipeline.execute import Threads
 from pipeline.mitigate.installed import likely, placed
-from pipeline.night.importing import bundled_collection
 from pipeline.quantities import Array, G
 from pipeline.records import (
     Band,
@@ -43,6 +40,7 @@ from pipeline.records import (
     Support,
     Verdict,
 )
+from tests.museum import carnegie
 
 MANY = Sampling(4096, 2.0)
 """As many samples, whatever the word: of none is that certain."""
@@ -116,7 +114,7 @@ def test_the_stated_error_is_what_probabilities_scatter_by() -> None:
 
 @cache
 def scenes_on_display() -> list[Scene]:
-    items = read_items(bundled_collection(), load_mapping("carnegie")).items
+    items = carnegie().items
     scenes = [classify(item) for item in items if item.on_display]
     return [scene for scene in scenes if scene.models and not scene.missing]
 

@@ -9,12 +9,10 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.analysis.rule_table import RuleMatch, fold, identifiers, read_rules, rules, with_own
 from pipeline.analysis.rules import readings, rule_for
-from pipeline.collection.mapping import load_mapping
-from pipeline.collection.reading import read_items
-from pipeline.night.importing import bundled_collection
 from pipeline.records import Item
 from pipeline.tables import Row, TableError
 from pipeline.tables.assumed import assumed
+from tests.museum import carnegie
 
 LAST = {"rule": "rest", "class": "object"}
 
@@ -124,7 +122,7 @@ def test_every_identifier_decides_one_class_whatever_the_size() -> None:
 
 
 def test_most_rules_are_used_by_one_real_collection_and_the_last_holds_for_the_rest() -> None:
-    used = {rule_for(item).rule.name for item in read_items(bundled_collection(), load_mapping("carnegie")).items}
+    used = {rule_for(item).rule.name for item in carnegie().items}
     assert rules().rules[-1].name in used
     assert len(used) >= 35, sorted({r.name for r in rules().rules} - used)
 

@@ -29,11 +29,10 @@ from pipeline.collection.inventory import (
 from pipeline.collection.inventory.reading_report import doubts
 from pipeline.collection.inventory.records import LostRecordsError
 from pipeline.collection.inventory.source_rows import SourceKey, known_rows
-from pipeline.collection.mapping import load_mapping
 from pipeline.collection.object_index import object_index, read_packed
-from pipeline.collection.reading import Reading, read_items
-from pipeline.night.importing import bundled_collection
+from pipeline.collection.reading import Reading
 from pipeline.records import Item, Origin, Problem, Provenance, Support
+from tests.museum import carnegie
 
 OTHERS = ("object_number", "since", "until", "assessment_digest")
 KEY = SourceKey("a.csv", "mapping", "code", "limits")
@@ -158,7 +157,7 @@ def test_no_flipped_bit_of_a_record_goes_unnoticed(seed: int, tmp_path: Path) ->
     random, file = Random(seed), tmp_path / "kouros.db"
     engine = open_database(file)
     METADATA.create_all(engine)
-    reading = read_items(bundled_collection(), load_mapping("carnegie"))
+    reading = carnegie()
     few = replace(reading, items=reading.items[:40], places=(), known={}, rows=40, rejected=())
     replace_inventory(engine, few)
     sound = {item.object_number: item for item in few.items}

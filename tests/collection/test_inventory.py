@@ -28,10 +28,10 @@ from pipeline.collection.inventory import (
     return_to,
     versions,
 )
-from pipeline.collection.mapping import PRESETS, load_mapping
-from pipeline.collection.reading import Reading, Rejected, read_items
+from pipeline.collection.reading import Reading, Rejected
 from pipeline.collection.record import CHOICES, KINDS, NUMBER_LIMIT
 from pipeline.records import Item, Origin, Problem, Provenance
+from tests.museum import carnegie
 
 # What `read_items` lets through: no NUL, no halves of surrogate pairs, no negative zero, nothing infinite.
 _TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=60)
@@ -103,7 +103,7 @@ def test_items_come_back_as_they_were_written(shared: Engine, items: list[Item])
 
 
 def test_carnegie_through_the_database(engine: Engine) -> None:
-    reading = read_items(PRESETS.parent / "data" / "carnegie_2000.csv", load_mapping("carnegie"))
+    reading = carnegie()
     assert replace_inventory(engine, reading).counts == ChangeCounts(
         before=0, after=2000, added=2000, removed=0, changed=0
     )

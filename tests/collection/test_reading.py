@@ -23,6 +23,7 @@ from pipeline.collection.mapping import PRESETS, Mapping, load_mapping
 from pipeline.collection.reading import NOWHERE, Reading, read_items
 from pipeline.collection.sources.delimited import FIELD_LIMIT
 from pipeline.records import Item, Origin, Provenance, Support
+from tests import museum
 
 from .conftest import HEADER, MAPPING, Read, one
 
@@ -31,7 +32,7 @@ CARNEGIE = PRESETS.parent / "data" / "carnegie_2000.csv"
 
 @pytest.fixture(scope="module")
 def carnegie() -> Reading:
-    return read_items(CARNEGIE, load_mapping("carnegie"))
+    return museum.carnegie()
 
 
 @pytest.fixture(scope="module")

@@ -9,11 +9,11 @@ import jsonschema
 import pytest
 
 from pipeline.collection.inventory import ITEM
-from pipeline.collection.mapping import DIAMETER, PRESETS, load_mapping
-from pipeline.collection.reading import read_items
+from pipeline.collection.mapping import DIAMETER
 from pipeline.collection.record import KINDS, item_schema, plausible, to_items, to_records
 from pipeline.records import Item, Problem, Support
 from pipeline.resources import resource
+from tests.museum import carnegie
 
 SCHEMA = json.loads(resource("schemas", "item.schema.json").read_text(encoding="utf-8"))
 
@@ -49,7 +49,7 @@ def test_every_number_has_a_plausible_range_and_a_reason() -> None:
 
 
 def test_every_carnegie_item_fits_the_schema() -> None:
-    items = list(read_items(PRESETS.parent / "data" / "carnegie_2000.csv", load_mapping("carnegie")).items)
+    items = list(carnegie().items)
     validator = jsonschema.Draft202012Validator(SCHEMA)
     for record in to_records(items):
         validator.validate(json.loads(json.dumps(record)))

@@ -14,6 +14,7 @@ from pipeline.collection.reading import Reading, read_items
 from pipeline.collection.source_audit import ContradictionError, require_settled, unit_named
 from pipeline.night.importing import bundled_collection
 from pipeline.tables.assumed import assumed
+from tests import museum
 
 MAPPING = """
 [source]
@@ -95,7 +96,7 @@ def test_sound_sources_and_single_slips_pass(sizes: Sizes, tmp_path: Path) -> No
     assert (some.suspicions, some.choices) == ((), ())
     assert sum(bool(item.problems) for item in some.items) == 50
     assert read(tmp_path, HEADER, texts(sizes[:19]), unit="cm").suspicions == (), "fewer may be chance"
-    carnegie = read_items(bundled_collection(), load_mapping("carnegie"))
+    carnegie = museum.carnegie()
     assert (carnegie.suspicions, carnegie.choices) == ((), ())
 
 

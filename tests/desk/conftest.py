@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.settings import load_settings
+from tests.conftest import made_once
 from tests.museum import edit, museum_of, night, vases
 from tests.report.conftest import browser
 
@@ -27,14 +28,17 @@ PAINTINGS = [
 
 
 @pytest.fixture(scope="session")
-def night_behind(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def night_behind() -> Path:
     """The folder of a museum after its first night, only to be copied."""
-    folder = tmp_path_factory.mktemp("desk") / "museum"
-    hostile = {**vases(1, 1)[0], "object_number": HOSTILE, "title": "<script>document.title='pwned'</script>"}
-    museum_of(folder, [*vases(), *PAINTINGS, hostile])
-    edit(folder / "kouros.toml", 'length = "cm"', 'length = "in"')
-    night(load_settings(folder / "kouros.toml"))
-    return folder
+
+    def make(around: Path) -> None:
+        folder = around / "museum"
+        hostile = {**vases(1, 1)[0], "object_number": HOSTILE, "title": "<script>document.title='pwned'</script>"}
+        museum_of(folder, [*vases(), *PAINTINGS, hostile])
+        edit(folder / "kouros.toml", 'length = "cm"', 'length = "in"')
+        night(load_settings(folder / "kouros.toml"))
+
+    return made_once("desk", make) / "museum"
 
 
 @pytest.fixture

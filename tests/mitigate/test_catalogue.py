@@ -13,7 +13,7 @@ from pipeline.operations.workspace import UsageError, Workspace
 from pipeline.records import Motion
 from pipeline.settings import Mitigation, Settings, load_settings, template
 from pipeline.tables import TableError
-from tests.museum import few_samples
+from tests.museum import small
 
 from .scenes import BLOCK, TOWER, demo_motion, solve
 
@@ -122,7 +122,7 @@ def test_the_settings_name_the_files(tmp_path: Path) -> None:
     """Relative to kouros.toml; a file that is not there is told with its setting."""
     written(tmp_path, ISOLATORS + OURS)
     file = tmp_path / "kouros.toml"
-    text = few_samples(template(museum="M", source="", mapping="kouros", site="demo"))
+    text = small(template(museum="M", source="", mapping="kouros", site="demo"))
     file.write_text(text.replace('catalogue = ""', 'catalogue = "ours.csv"'), encoding="utf-8")
     settings = load_settings(file)
     engine: object = None

@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from pipeline.analysis.furnished import furnished
 from pipeline.analysis.furniture import FurnitureFilter, filter_of
 from pipeline.analysis.response import respond
 from pipeline.analysis.verdicts import LevelMotions
-from pipeline.collection.database import open_database
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.measures.base import held
@@ -21,7 +19,6 @@ from pipeline.motions import read_site
 from pipeline.quantities import Array, G
 from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRecord, Support, Verdict
 from pipeline.resources import resource
-from pipeline.store.runs import load_run
 
 pytestmark = pytest.mark.slow_file
 
@@ -34,8 +31,8 @@ def motions() -> tuple[Motion, ...]:
 
 
 @pytest.fixture(scope="module")
-def record(demo_folder: Path) -> RunRecord:
-    return load_run(open_database(demo_folder / "kouros.sqlite"))
+def record(demo_record: RunRecord) -> RunRecord:
+    return demo_record
 
 
 def advised(record: RunRecord, measure: str) -> list[tuple[Assessment, Recommendation]]:

@@ -17,7 +17,7 @@ from pipeline.mitigate.measures import checked
 from pipeline.motions import read_motion
 from pipeline.settings import template
 from pipeline.tables import TableError
-from tests.museum import few_samples, in_common
+from tests.museum import in_common, small
 from tests.packages import install
 from tests.warm import kouros_process
 
@@ -79,7 +79,7 @@ def museum(tmp_path: Path) -> Path:
     (folder / "collection.csv").write_text(COLLECTION, encoding="utf-8")
     sine = ("motions", "synthesise", "sine", "amplitude=5", "frequency=1", "cycles=3", "--out", "site")
     assert kouros(folder, *sine).returncode == 0
-    text = few_samples(template(museum="M", source="collection.csv", mapping="kouros", site="site"))
+    text = small(template(museum="M", source="collection.csv", mapping="kouros", site="site"))
     (folder / "kouros.toml").write_text(text, encoding="utf-8")
     return folder
 

@@ -18,9 +18,8 @@ from pipeline.motions.by_name import read_motion
 from pipeline.operations.report_status import last_good
 from pipeline.quantities import G
 from pipeline.records import Item
-from pipeline.resources import resource
 from pipeline.settings import load_settings, template
-from tests.museum import few_samples, in_common
+from tests.museum import in_common, own_site, small
 from tests.packages import install
 from tests.warm import kouros_process
 
@@ -166,9 +165,10 @@ unit = "m"
 def museum(folder: Path, *rows: str) -> None:
     """A museum of its own in a folder, whose objects stand on the floor: closed forms hold of its motion."""
     in_common(folder)
+    own_site(folder)
     (folder / "export.csv").write_text("\n".join(["number,gallery,title,height,width", *rows]) + "\n", encoding="utf-8")
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
-    settings = few_samples(template(museum="Test", source="export.csv", mapping="mapping.toml", site="demo"))
+    settings = small(template(museum="Test", source="export.csv", mapping="mapping.toml", site="site"))
     stands = '[[house]]\ngallery = "A"\nfurniture = "floor"\nsaid_by = "Ann"\nsaid_on = 2031-05-01\n'
     (folder / "kouros.toml").write_text(f"{settings}\n{stands}", encoding="utf-8")
 
@@ -199,7 +199,7 @@ def test_a_night_runs_it_on_the_objects_that_it_names(packages: Path, tmp_path: 
     topples = ran["1", "toppling"]
     # A vessel's base is 0.6 of its width, of which 0.9 bears, its centre of gravity at 0.45 of its height; of the worst
     # of the directions, every 10 degrees, 1 - cos 5 may be missing.
-    peaks = [np.hypot(*m.acceleration[:2]).max() for m in read_motion(resource("site_motions", "demo"))]
+    peaks = [np.hypot(*m.acceleration[:2]).max() for m in read_motion(tmp_path / "site")]
     pushes = [peak / G * 0.45 * 1.2 / (2.0 * 0.9 * 0.3 * 0.2) for peak in peaks]
     assert any(0.996 * push <= float(topples["demand"]) <= push for push in pushes)
     assert "grip of its foot: 2 (1.5 to 2.5), assumed" in topples["assumptions"]

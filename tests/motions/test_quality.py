@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import obspy
 import pytest
@@ -26,10 +28,11 @@ RECORDS = {
 }
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def record(agency_file):
     """Return the samples of a record as its files have them, (3, n), horizontals first, and its step in s."""
 
+    @cache
     def read(name):
         if name == "ridgecrest":
             stream = obspy.read(str(resource("site_motions", "demo") / "*.mseed"))
@@ -38,7 +41,9 @@ def record(agency_file):
             traces = [t for file in RECORDS[name] for t in obspy.read(str(agency_file(file)))]
             traces.sort(key=lambda t: t.stats.kouros.orientation == "up")
         n = min(t.stats.npts for t in traces)
-        return np.stack([np.asarray(t.data[:n], dtype=float) for t in traces]), traces[0].stats.delta
+        data = np.stack([np.asarray(t.data[:n], dtype=float) for t in traces])
+        data.flags.writeable = False
+        return data, traces[0].stats.delta
 
     return read
 

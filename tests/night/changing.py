@@ -33,7 +33,7 @@ from pipeline.store.tables import DECISION
 from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.sheet_answers import take_sheet
 from tests.images.conftest import photograph
-from tests.museum import DATABASE, SILENT, few_samples, in_common, with_tables
+from tests.museum import DATABASE, SILENT, in_common, small, with_tables
 
 COLUMNS = (
     "object_number", "title", "object_name", "gallery", "case", "on_display", "medium", "height_m", "width_m",
@@ -167,7 +167,7 @@ class Changing:
                 file.write_bytes(content)
         for at, sheet in enumerate(self.sheets):
             (self.home / f"sheet-{at}.csv").write_text(sheet, encoding="utf-8")
-        said = few_samples(template(museum="Test", source="collection.csv", mapping="kouros", site="site"))
+        said = small(template(museum="Test", source="collection.csv", mapping="kouros", site="site"))
         given = {"shrink_limit": "0.99", "fragility": "false", "survey": "false"} | self.values.get("any", {})
         for name, value in given.items():
             lines = said.split("\n")

@@ -29,7 +29,7 @@ from pipeline.settings.operations import Logs
 from pipeline.store.decisions import add_decision
 from pipeline.store.runs import load_run
 from pipeline.tools.doctor import diagnose
-from tests.museum import few_samples, in_common, kouros
+from tests.museum import in_common, kouros, small
 
 pytestmark = pytest.mark.slow_file
 
@@ -86,7 +86,7 @@ def museum(folder: Path, rows: list[dict[str, Any]]) -> Settings:
     write(folder, rows)
     words = ("sine", "amplitude=7", "frequency=1.5", "cycles=3", "--out", "site")
     assert kouros("motions", "synthesise", *words, folder=folder).returncode == 0
-    text = few_samples(template(museum="Every kind", source="collection.csv", mapping="kouros", site="site"))
+    text = small(template(museum="Every kind", source="collection.csv", mapping="kouros", site="site"))
     (folder / "kouros.toml").write_text(text, encoding="utf-8")
     return load_settings(folder / "kouros.toml")
 

@@ -17,6 +17,7 @@ from pipeline.motions import read_site
 from pipeline.motions.errors import MotionError
 from pipeline.night.run import Selection, run, summarise
 from pipeline.operations.workspace import LockedError, UsageError, locked
+from pipeline.records import RunRecord
 from pipeline.report.pages.tallies import tally, total
 from pipeline.resources import resource
 from pipeline.settings import SettingsError, load_settings
@@ -47,12 +48,11 @@ def test_the_demonstration_accounts_for_every_object(demo_folder: Path) -> None:
             assert bool(assessment.findings) is not bool(assessment.scene.missing)
 
 
-def test_the_exports_say_what_the_store_says(demo_folder: Path) -> None:
-    record = load_run(open_database(demo_folder / "kouros.sqlite"))
+def test_the_exports_say_what_the_store_says(demo_folder: Path, demo_record: RunRecord) -> None:
     folder = demo_folder / "reports" / "latest"
     with (folder / "findings.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
-    findings = [f for a in record.assessments for f in a.findings]
+    findings = [f for a in demo_record.assessments for f in a.findings]
     assert len(rows) == len(findings)
     assert {r["verdict"] for r in rows} <= {"pass", "fail", "undetermined"}
     lines = (folder / "findings.jsonl").read_text(encoding="utf-8").splitlines()
@@ -231,11 +231,10 @@ def test_findings_do_not_depend_on_the_rest_of_the_collection(demo_folder: Path,
     assert [a.recommendations for a in alone.assessments] == [a.recommendations for a in wanted]
 
 
-def test_the_motions_of_the_demonstration(demo_folder: Path) -> None:
+def test_the_motions_of_the_demonstration(demo_record: RunRecord) -> None:
     """Eleven of one level: at a friction of 0.05 they slide centimetres to nearly a metre (PGV 28 to 96 cm/s)."""
-    record = load_run(open_database(demo_folder / "kouros.sqlite"))
-    assert len(record.motions) == 11
-    paths = [chart for key, chart in record.charts.items() if key.startswith("path:")]
+    assert len(demo_record.motions) == 11
+    paths = [chart for key, chart in demo_record.charts.items() if key.startswith("path:")]
     assert len(paths) == 11
     for path in paths:
         (curve,) = path.curves

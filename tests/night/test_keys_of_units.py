@@ -231,7 +231,7 @@ def house_rule(what: str, states: str) -> Callable[[Changing], None]:
 def neither(museum: Changing) -> None:
     """All settings of which neither objects nor pages know: what they cost together, each costs at most."""
     for name, value in (
-        ("time_zone", '"Europe/Rome"'), ("shrink_limit", "0.5"), ("workers", "1"), ("processes", "1"), ("keep", "4"),
+        ("time_zone", '"Europe/Rome"'), ("shrink_limit", "0.5"), ("workers", "2"), ("processes", "1"), ("keep", "4"),
         ("unused_days", "20.0"), ("reports", "4"), ("rows", "500"), ("mapping", '"kouros"'),
     ):  # fmt: skip
         museum.set(name, value)

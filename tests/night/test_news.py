@@ -20,7 +20,7 @@ from pipeline.settings import load_settings, template
 from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.house_answers import take_back
 from pipeline.tools.rerender import render_again
-from tests.museum import DATABASE, SILENT, edit, few_samples, in_common, kouros, on_the_floor, short_site, with_tables
+from tests.museum import DATABASE, SILENT, edit, in_common, kouros, on_the_floor, short_site, small, with_tables
 
 NAMES = ("object_number", "title", "gallery", "height_m", "width_m", "depth_m", "medium", "on_display")
 KIND = NewsKind
@@ -75,7 +75,7 @@ def museum(tmp_path: Path) -> Path:
     with_tables(tmp_path / DATABASE)
     in_common(tmp_path)
     text = template(museum="Test", source="collection.csv", mapping="kouros", site="site")
-    (tmp_path / "kouros.toml").write_text(few_samples(text), encoding="utf-8")
+    (tmp_path / "kouros.toml").write_text(small(text), encoding="utf-8")
     edit(short_site(tmp_path), "scale = 1.0", "scale = 0.28")
     on_the_floor(tmp_path)
     edit(tmp_path / "kouros.toml", "shrink_limit = 0.2", "shrink_limit = 0.9")

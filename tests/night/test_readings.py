@@ -15,10 +15,8 @@ from pipeline.cli.console import summary_lines
 from pipeline.collection.database import open_database
 from pipeline.collection.inventory import latest_import, reading_report, replace_inventory, versions
 from pipeline.collection.inventory.reading_report import READING, account, doubts
-from pipeline.collection.mapping import load_mapping
-from pipeline.collection.reading import read_items
 from pipeline.collection.source_audit import ContradictionError
-from pipeline.night.importing import bundled_collection, go_back, import_collection
+from pipeline.night.importing import go_back, import_collection
 from pipeline.night.reading_summary import UNKNOWN
 from pipeline.night.run import Selection, run
 from pipeline.operations.run_summary import Summary
@@ -33,7 +31,7 @@ from pipeline.tools.doctor import diagnose
 from pipeline.tools.rerender import render_again
 from pipeline.tools.sheet_answers import take_sheet
 from tests.collection.real_exports import read
-from tests.museum import SILENT, workspace
+from tests.museum import SILENT, carnegie, workspace
 from tests.report import builder
 
 pytestmark = pytest.mark.slow_file
@@ -231,7 +229,7 @@ def test_a_database_is_no_other_source(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["carnegie_2000", "met_27_rows_cp1252", "tms_rows_cut_off", "moma_rows"])
 def test_real_files_are_accounted_for(name: str, tmp_path: Path) -> None:
     """Rows of four real exports: rows, refusals and doubtful objects are those of the reading itself."""
-    reading = read_items(bundled_collection(), load_mapping("carnegie")) if "carnegie" in name else read(name)
+    reading = carnegie() if "carnegie" in name else read(name)
     engine = open_database(tmp_path / "k.sqlite")
     upgrade(engine)
     replace_inventory(engine, reading)
@@ -353,7 +351,7 @@ def test_what_a_version_keeps_is_bounded(tmp_path: Path, monkeypatch: pytest.Mon
     """More objects are doubtful than row and line are kept of: each is still named, the later ones by number alone."""
     monkeypatch.setattr(reading_report, "PLACES", 50)
     problem = (Problem("mass_kg", "no", "weigh it"),)
-    reading = read_items(bundled_collection(), load_mapping("carnegie"))
+    reading = carnegie()
     items = tuple(replace(item, problems=problem) for item in reading.items)
     engine = open_database(tmp_path / "k.sqlite")
     upgrade(engine)

@@ -21,6 +21,7 @@ from referencing import Registry, Resource
 
 from pipeline.resources import resource
 from pipeline.tools.synthetic import synthesise
+from tests.conftest import made_once
 from tests.museum import COLUMNS, workspace
 from tests.warm import kouros_process
 
@@ -43,11 +44,13 @@ def validate(document: Any, schema: str) -> None:
 
 
 @pytest.fixture(scope="session")
-def shaking(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def shaking() -> Path:
     """A site of one short motion: what is tested here is not what it does to objects."""
-    folder = tmp_path_factory.mktemp("sites") / "shaking"
-    synthesise("sine", ["amplitude=1.2", "frequency=2", "cycles=2"], folder)
-    return folder
+
+    def make(folder: Path) -> None:
+        synthesise("sine", ["amplitude=1.2", "frequency=2", "cycles=2"], folder / "shaking")
+
+    return made_once("shaken", make) / "shaking"
 
 
 @pytest.fixture
@@ -99,20 +102,24 @@ def within(folder: Path, *words: str, **more: str) -> subprocess.CompletedProces
 
 
 @pytest.fixture(scope="session")
-def nights(tmp_path_factory: pytest.TempPathFactory, shaking: Path) -> Nights:
-    folder = tmp_path_factory.mktemp("interrupted") / "museum"
-    folder.mkdir()
-    workspace(folder, rows(0.4), site=str(shaking))
-    assert within(folder, "run").returncode == 0
-    before = objects(folder / "reports" / "latest")
-    (folder / "export.csv").write_text("\n".join([COLUMNS, *rows(0.9)]) + "\n", encoding="utf-8")
-    undisturbed = Path(shutil.copytree(folder, folder.parent / "undisturbed", symlinks=True))
-    start = time.monotonic()
-    ran = subprocess.run(
-        command("run"), cwd=undisturbed, env=environment({}), capture_output=True, text=True, check=False
-    )
-    seconds = time.monotonic() - start
-    assert ran.returncode == 0, ran.stderr
-    after = objects(undisturbed / "reports" / "latest")
+def nights(shaking: Path) -> Nights:
+    def make(around: Path) -> None:
+        folder = around / "museum"
+        folder.mkdir()
+        workspace(folder, rows(0.4), site=str(shaking))
+        assert within(folder, "run").returncode == 0
+        (folder / "export.csv").write_text("\n".join([COLUMNS, *rows(0.9)]) + "\n", encoding="utf-8")
+        undisturbed = Path(shutil.copytree(folder, around / "undisturbed", symlinks=True))
+        start = time.monotonic()
+        ran = subprocess.run(
+            command("run"), cwd=undisturbed, env=environment({}), capture_output=True, text=True, check=False
+        )
+        (around / "seconds").write_text(str(time.monotonic() - start), encoding="utf-8")
+        assert ran.returncode == 0, ran.stderr
+
+    around = made_once("nights", make)
+    folder, undisturbed = around / "museum", around / "undisturbed"
+    before, after = (objects(one / "reports" / "latest") for one in (folder, undisturbed))
     assert before != after
+    seconds = float((around / "seconds").read_text(encoding="utf-8"))
     return Nights(folder, before, after, last(str(undisturbed / "kouros.sqlite")), seconds)

@@ -32,7 +32,7 @@ from pipeline.store.tables import METADATA
 from pipeline.store.verifying import tables, verify_table
 from pipeline.tools.deep_check import examine
 from pipeline.tools.synthetic import synthesise
-from tests.museum import few_samples
+from tests.museum import small
 
 pytestmark = pytest.mark.slow_file
 
@@ -76,7 +76,7 @@ def museum(tmp_path_factory: pytest.TempPathFactory) -> Path:
     synthesise("sine", ["amplitude=1.2", "frequency=2", "cycles=2"], folder / "site")
     write_export(folder)
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
-    text = few_samples(template(museum="Test", source="export.csv", mapping="mapping.toml", site="site"))
+    text = small(template(museum="Test", source="export.csv", mapping="mapping.toml", site="site"))
     (folder / "kouros.toml").write_text(text.split("\n[logs]")[0], encoding="utf-8")
     settings = load_settings(folder / "kouros.toml")
     run(settings, SILENT)

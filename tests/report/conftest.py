@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from pipeline.report import render
+from tests.conftest import made_once
 
 from . import builder
 
@@ -19,9 +20,9 @@ CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 
 
 @pytest.fixture(scope="session")
-def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def report() -> Path:
     """The folder of a rendered report of the builder's record."""
-    return render(builder.record(), tmp_path_factory.mktemp("reports") / "one", doubts=builder.doubts).parent
+    return made_once("reports", lambda folder: render(builder.record(), folder / "one", doubts=builder.doubts)) / "one"
 
 
 @pytest.fixture(scope="session")

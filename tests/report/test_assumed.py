@@ -8,8 +8,6 @@ from math import isclose
 import pytest
 
 from pipeline.analysis.classify import classify
-from pipeline.collection.mapping import PRESETS, load_mapping
-from pipeline.collection.reading import read_items
 from pipeline.records import Anchorage, Furniture, Hanging, Item, Scene, Support
 from pipeline.records import run_sentences as say
 from pipeline.records.phrase import Clause, Number
@@ -17,6 +15,7 @@ from pipeline.records.phrases import PHRASES
 from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced
 from pipeline.report.language import language, speaking
 from pipeline.report.units import Units
+from tests.museum import carnegie
 
 WAYS = "assumed for two hooks or D-rings, or one hook or wire"
 DEPTH = f"depth of its hooks: 0.0127 m (0.00508 to 0.0254), {WAYS}"
@@ -116,7 +115,7 @@ def test_a_phrase_finds_again_what_it_wrote(phrase: Clause) -> None:
 
 
 def _museum() -> list[Item]:
-    read = read_items(PRESETS.parent / "data" / "carnegie_2000.csv", load_mapping("carnegie"))
+    read = carnegie()
     items = list(read.items)[::7]
     more = [
         *(replace(item, support=held) for item in items[::9] for held in Support if held is not Support.ISOLATED),

@@ -13,11 +13,8 @@ import pytest
 from lxml import etree
 from selenium.webdriver.support.ui import WebDriverWait
 
-from pipeline.operations.workspace import open_workspace
 from pipeline.records import RunRecord
 from pipeline.report import render
-from pipeline.settings import load_settings
-from pipeline.store.runs import load_run
 
 from .crowded import COUNT, resampled
 
@@ -36,8 +33,8 @@ SLOW = 5.0
 
 
 @pytest.fixture(scope="module")
-def record(demo_folder: Path) -> RunRecord:
-    return load_run(open_workspace(load_settings(demo_folder / "kouros.toml")).engine)
+def record(demo_record: RunRecord) -> RunRecord:
+    return demo_record
 
 
 @pytest.fixture(scope="module")

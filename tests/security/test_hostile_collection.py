@@ -21,7 +21,7 @@ from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.settings import template
 from pipeline.tools.synthetic import synthesise
-from tests.museum import few_samples, in_common
+from tests.museum import in_common, small
 from tests.operations.conftest import within
 from tests.operations.servers import Web, web
 from tests.report.conftest import browser as browser  # noqa: PLC0414 - a fixture
@@ -95,7 +95,7 @@ def night(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Night]:
     with web(204) as canary:
         payload = payloads.payloads(canary.url + "/", around / OUTSIDE)
         table = list(payloads.rows(payload))
-        text = few_samples(template(museum=payload[0], source="export.csv", mapping="kouros", site="site"))
+        text = small(template(museum=payload[0], source="export.csv", mapping="kouros", site="site"))
         (folder / "kouros.toml").write_text(text.replace("fragility = true", "fragility = false"), encoding="utf-8")
         payloads.write_csv(folder / "export.csv", table)
         outside = tree(around, folder)

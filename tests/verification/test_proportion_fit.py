@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from pipeline.collection.mapping import load_mapping
-from pipeline.collection.reading import read_items
-from pipeline.night.importing import bundled_collection
 from pipeline.records import Item
 from pipeline.verification.proportion_fit import COLUMNS, LIKE, WIDER, inside, rows_of, sizes_by_class, tall_rows_of
+from tests.museum import carnegie
 
 WIDTHS = np.linspace(0.1, 0.3, 101)
 
@@ -60,7 +58,7 @@ def test_hidden_sizes_of_the_demonstration_lie_within_nine_times_in_ten() -> Non
 
     Sizes hidden from an object with two others are judged by the narrower of two ranges, and by no joint one.
     """
-    found = inside(read_items(bundled_collection(), load_mapping("carnegie")).items)
+    found = inside(carnegie().items)
     tried, right = (sum(column) for column in zip(*found.values(), strict=True))
     assert tried > 2000
     assert right / tried == pytest.approx(0.9, abs=0.04)

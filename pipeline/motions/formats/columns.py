@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import re
 from array import array
+from collections.abc import Iterator
 from datetime import date
 from importlib import import_module
 from typing import Any
@@ -25,11 +26,16 @@ from pipeline.motions.formats.record_text import FormatError, Lines, Source, sho
 from pipeline.quantities import Array
 
 _NUMBER = re.compile(r"^[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[Ee][+-]?\d{1,3})?$")
+_PLAIN = rb"[+-]?(?:\d{1,20}+(?:\.\d{0,20}+)?+|\.\d{1,20}+)(?:[Ee][+-]?\d{1,3}+)?+"
+"""The same of bytes, without a second thought."""
 _FORTRAN = str.maketrans("Dd", "Ee", '"')
 _COUNTER = re.compile(rb"\s(\d{1,7})\s*$")
 _MOMENT = re.compile(r"^(?:(\d{4})[-/](\d\d)[-/](\d\d)[T ])?(\d\d):(\d\d):(\d\d(?:\.\d{1,9})?)(Z?)$")
 _TOUCHING = re.compile(r"(?<=\d)(?=[+-]\d*\.)")
 _DECIMAL = re.compile(r"(?<=\d),(?=\d)")
+_BLANKS = bytes.maketrans(b",;\t", b"   ")
+_AT_ONCE = 256
+"""Rows that are taken together where all are plain."""
 _LEAST_ROWS, _MOST_COLUMNS, _MOST_HEAD = 5, 20, 200
 _CONVERT = "kouros motions convert FILE --columns ns --dt 0.01 --unit g --out FOLDER"
 _BARE = 4
@@ -325,7 +331,8 @@ def _values(lines: Lines, start: int, form: tuple[str | None, bool], width: int)
         end -= 1
     values = array("d")
     same = width
-    for index in range(start, end):
+    plain = _plain_rows(form, width)
+    for index in _each_row(lines, start, end, plain, values):
         cells = _row(lines.text(index), *form)
         if cells is None or len(cells) != width:
             if cells is None or index < end - 1 or len(cells) > width:
@@ -338,6 +345,24 @@ def _values(lines: Lines, start: int, form: tuple[str | None, bool], width: int)
         past = int(np.flatnonzero(~np.isfinite(found))[0])
         raise lines.error(start + past // width, "holds a number beyond all bounds")
     return found, same
+
+
+def _plain_rows(form: tuple[str | None, bool], width: int) -> re.Pattern[bytes]:
+    """Return the pattern of rows of so many numbers that need no second look, each with its line's end."""
+    gap = rb"[ \t\r]++" if form[0] is None else rb"[ \t\r]*+" + form[0].encode() + rb"[ \t\r]*+"
+    row = rb"[ \t\r]*+" + _PLAIN + (b"(?:" + gap + _PLAIN + b"){%d}" % (width - 1))
+    return re.compile(b"(?:" + row + rb"[ \t\r]*+\n)++")
+
+
+def _each_row(lines: Lines, start: int, end: int, plain: re.Pattern[bytes], values: array[float]) -> Iterator[int]:
+    """Take the numbers of many plain rows at once, and yield each row of other parts, to be looked at."""
+    for at in range(start, end, _AT_ONCE):
+        part = lines.lines[at : min(at + _AT_ONCE, end)]
+        rows = b"\n".join([*part, b""])
+        if plain.fullmatch(rows):
+            values.extend(map(float, rows.translate(_BLANKS).split()))
+        else:
+            yield from range(at, at + len(part))
 
 
 def _traces(lines: Lines, headonly: bool) -> list[Any]:

@@ -15,13 +15,14 @@ from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection
 from tests.collection.sources.lido_files import record, wrap
+from tests.museum import carnegie
 
 
 @pytest.mark.parametrize("name", ["export.csv.gz", "export.csv"])
 def test_packed_rows_are_the_rows(name: str, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(gzip.compress(bundled_collection().read_bytes()))
     packed = read_items(tmp_path / name, load_mapping("carnegie"))
-    plain = read_items(bundled_collection(), load_mapping("carnegie"))
+    plain = carnegie()
     assert (packed.items, packed.places, packed.rejected) == (plain.items, plain.places, plain.rejected)
     assert packed.source == name
 
