@@ -152,6 +152,7 @@ def environment(language: Language | None = None) -> Environment:
     env.filters["squeezed"] = _squeezed
     env.filters["thousands"] = count
     env.filters["moment"] = moment
+    env.filters["css"] = _css
     return env
 
 
@@ -164,6 +165,12 @@ def fragments(env: Environment, template: str) -> Callable[..., Markup]:
         return Markup(getattr(macros, macro)(*given))  # noqa: S704 - the macro has escaped what it was given
 
     return fragment
+
+
+def _css(text: str) -> Markup:
+    """Return a text as a string of a style sheet, which knows no entities: what could end it is told by its number."""
+    told = "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in Markup(text).unescape())
+    return Markup(f'"{told}"')  # noqa: S704 - only letters, digits and escapes
 
 
 def _squeezed(text: Markup) -> Markup:
