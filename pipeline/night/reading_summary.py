@@ -77,7 +77,7 @@ def unsaid(shown: int) -> str:
     """Return that no column says what is on display, or, where nothing is, why and what mends it."""
     if not shown:
         return (
-            "nothing is on display, and a night would have nothing to assess: no record says where its object is; export "
-            'the current locations, or put a constant = "Gallery 1" under [columns.gallery] in the mapping'
+            "nothing is on display, and a night would have nothing to assess: no record says where its object is; "
+            'export the current locations, or put a constant = "Gallery 1" under [columns.gallery] in the mapping'
         )
     return f"no column says what is on display: all {counted(shown, 'object')} are taken to be"

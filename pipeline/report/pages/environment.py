@@ -5,6 +5,7 @@ from base64 import b64encode
 from collections.abc import Callable, Hashable, Mapping
 from functools import cache, lru_cache
 from gettext import NullTranslations
+from html import unescape
 from typing import Any
 
 from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined, nodes
@@ -168,8 +169,8 @@ def fragments(env: Environment, template: str) -> Callable[..., Markup]:
 
 
 def _css(text: str) -> Markup:
-    """Return a text as a string of a style sheet, which knows no entities: what could end it is told by its number."""
-    told = "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in Markup(text).unescape())
+    """Return a text as a string of a style sheet, which knows no entities."""
+    told = "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in unescape(text))
     return Markup(f'"{told}"')  # noqa: S704 - only letters, digits and escapes
 
 
