@@ -31,7 +31,8 @@ def night_behind(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a museum after its first night, only to be copied."""
     folder = tmp_path_factory.mktemp("desk") / "museum"
     hostile = {**vases(1, 1)[0], "object_number": HOSTILE, "title": "<script>document.title='pwned'</script>"}
-    museum_of(folder, [*vases(), *PAINTINGS, hostile])
+    stored = {**vases(1, 1)[0], "object_number": "S.1", "title": "Jug in the store", "gallery": "Storage"}
+    museum_of(folder, [*vases(), *PAINTINGS, hostile, stored])
     edit(folder / "kouros.toml", 'length = "cm"', 'length = "in"')
     night(load_settings(folder / "kouros.toml"))
     return folder

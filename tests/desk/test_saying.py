@@ -28,6 +28,17 @@ def engine_of(folder: Path):  # type: ignore[no-untyped-def]
     return open_database(load_settings(folder / "kouros.toml").database)
 
 
+def test_what_is_in_the_store_is_not_called_fine(visitor: Visitor) -> None:
+    """Nobody looked at it: a list that says "Fine" would be believed."""
+    (row,) = visitor.get("/", q="jug store").page.xpath("//*[contains(@class, 'hits')]//li")
+    assert "Not on display" in row.text_content()
+    assert "Fine" not in row.text_content()
+    (there,) = visitor.get("/", q="", state="aside").page.xpath("//*[contains(@class, 'hits')]//li")
+    assert "S.1" in there.text_content()
+    told = visitor.get("/").page.xpath("//select[@name='state']/option[@value='aside']")
+    assert told[0].text_content() == "Not on display (1)"
+
+
 def test_a_decision_is_that_of_the_command(visitor: Visitor, museum: Path) -> None:
     got = visitor.said_of("2.3", "/object/decide", kind="accept", why="case is rebuilt", until="2099-01-01")
     page = visitor.follow(got)
