@@ -121,6 +121,27 @@ def test_measurements_say_who_wrote_what(visitor: Visitor, museum: Path) -> None
     assert versions(engine_of(museum))[0].source == "desk, A. Smith"
 
 
+@pytest.mark.parametrize(
+    ("cells", "told"),
+    [
+        ({"m.mass_kg": "999999"}, "Mass: 1000000\u202flb in "),
+        ({"m.mass_kg": "0"}, "Mass: '0' is too little to be true: measure it again"),
+        ({"m.friction": "3"}, "Friction under the base: '3' is too much to be true: measure it again"),
+        ({"m.allowable_stress_pa": "0.1 psi"}, "is too little to be true"),
+    ],
+)
+def test_what_cannot_be_beside_its_record_is_told_in_the_words_of_the_desk(
+    cells: dict[str, str], told: str, visitor: Visitor, museum: Path
+) -> None:
+    """A vase of a foot that weighs 500 tons; and nobody with a tablet has a mapping to mend."""
+    got = visitor.said_of("1.1", "/object/measured", **cells)
+    assert told in got.alert
+    for word in ("mapping", "column", "database", "_kg", "_m"):
+        assert word not in got.alert
+    item = items_named(engine_of(museum), ["1.1"])["1.1"]
+    assert (item.mass_kg, item.friction, item.allowable_stress_pa) == (None, None, None)
+
+
 def test_a_cell_that_is_no_measure_is_marked_and_nothing_is_saved(visitor: Visitor, museum: Path) -> None:
     for cell in ("-3", "10-12", "nan", "1e3", "1/0", "1,234", "3 kg", "9999999", "=1+1", "x" * 200):
         got = visitor.said_of("1.1", "/object/measured", **{"m.clearance_m": cell, "m.mass_kg": "3"})
