@@ -130,6 +130,11 @@ def rule_words(rule: str) -> str:
     return told
 
 
+def reason_words(why: str) -> str:
+    """Return why an object is of its class as `rule_words` does, without the name of the rule."""
+    return rule_words(f"_: {why}").removeprefix("_: ")
+
+
 def sourced(text: str) -> str:
     """Return where a number or a measure comes from, its tables by their names in the reader's language.
 
