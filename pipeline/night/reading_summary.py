@@ -78,6 +78,6 @@ def unsaid(shown: int) -> str:
     if not shown:
         return (
             "nothing is on display, and a night would have nothing to assess: no record says where its object is; "
-            'export the current locations, or put a constant = "Gallery 1" under [columns.gallery] in the mapping'
+            'export the current locations, or write constant = "Gallery 1" in place of column under [columns.gallery]'
         )
     return f"no column says what is on display: all {counted(shown, 'object')} are taken to be"

@@ -160,6 +160,9 @@ LEVEL_WORST = Clause(
 LEVEL_PERIOD = Clause("return period {years:-} years")
 LEVEL_APPROVED = Clause("approved by {words} on {case}")
 LEVEL_UNANSWERED = Clause("no engineer has approved these motions")
+ON_GROUND = Clause(
+    "Every gallery is taken to stand on the ground: the manifest names no upper floors, which would shake more"
+)
 LEVEL_FLAT = Clause("no vertical shaking was recorded, and none is assumed: {words}")
 LEVEL_ESTIMATED = Clause("no vertical shaking was recorded, and an estimate is assumed: {words}")
 
