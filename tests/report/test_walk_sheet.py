@@ -262,9 +262,8 @@ def test_a_sheet_that_counts_a_later_decision_says_so(tmp_path: Path) -> None:
 def test_a_force_on_what_nobody_weighed_is_told_in_times_its_weight() -> None:
     """Truth by hand: 9,806.65 N on 850 kg are 1.176 of its weight, rounded up to 1.2, whatever it weighs."""
     one = advice(force=(9806.65, "N"), heaviest=(850.0, "kg"), weight=(85.0, "kg"))
-    one = replace(
-        one, measure="fasten", sentence=f"Fasten its base: the mount must hold {{force}} sideways. {HEAVIEST}"
-    )
+    alone = "Fasten its base: the mount must hold {force} sideways."
+    one = replace(one, measure="fasten", sentence=f"{alone} {HEAVIEST}")
     for units in (Units("cm"), Units("in")):
         assert numbers_to_set(one, units) == "to hold 1.2 times its weight"
         told = brief_measure(one, units)
