@@ -272,3 +272,9 @@ def test_a_force_on_what_nobody_weighed_is_told_in_times_its_weight() -> None:
     weighed = replace(one, sentence=alone)
     assert numbers_to_set(weighed, Units("cm")) == "to hold 1000\u202fkg"
     assert brief_measure(weighed, Units("cm")) == "Fasten its base: the mount must hold 1000\u202fkg sideways."
+
+
+def test_a_gallery_that_is_a_number_is_called_one(tmp_path: Path) -> None:
+    told = words_of(drawn([WalkRow("1", "Jug", "")], name="704"), tmp_path)
+    assert "Gallery 704" in "\n".join(told)
+    assert "Gallery Gallery" not in "\n".join(words_of(drawn([WalkRow("1", "Jug", "")]), tmp_path))
