@@ -53,3 +53,10 @@ def fault_words(problem: BaseException) -> str:
     at = f" ({place})" if place else ""
     said = str(problem) if len(str(problem)) <= _LONGEST else f"{str(problem)[:_LONGEST]}..."
     return f"{type(problem).__name__}{': ' if said else ''}{said}{at}"
+
+
+def mends_toml(problem: Exception) -> str:
+    """Return what mends a text that is not TOML, by what its reader says."""
+    if any(word in str(problem) for word in ("twice", "overwrite", "mutate")):
+        return "that table or key is there before: put all of its lines below the first of them"
+    return "quote texts and write one key a line"

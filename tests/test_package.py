@@ -121,6 +121,16 @@ def test_it_is_imported_as_kouros_too_and_nothing_is_there_twice(tmp_path: Path)
     assert loaded == "[]"
 
 
+def test_the_command_runs_as_a_module_too(tmp_path: Path) -> None:
+    """Where the folder of the command is not on the path, as in a notebook or under Windows."""
+    both = f"{ROOT}{os.pathsep}{ROOT / 'pipeline' / '_alias'}"
+    told = subprocess.run(
+        [sys.executable, "-m", "kouros", "--version"],
+        cwd=tmp_path, env={**os.environ, "PYTHONPATH": both}, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert told.stdout.startswith("kouros, version ")
+
+
 def test_the_wheel_carries_schemas_templates_and_the_demo_site(tmp_path: Path) -> None:
     """Built by the real back end, unpacked, and asked for its files from outside of the checkout."""
     command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]

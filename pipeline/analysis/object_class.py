@@ -54,6 +54,10 @@ def _told(chances: tuple[Chance, ...]) -> tuple[tuple[str, float], ...]:
     return tuple((one.object_class, round(one.probability, 2)) for one in chances if one.probability >= POSSIBLE)
 
 
+WEIGHED = "all that its record says, weighed together"
+"""Why an object is of a class that none of its words names."""
+
+
 def _why(read: Readings, taken: Chance) -> str:
     """Return why an object is of a class: the rule that says so, of those of each part of its record."""
     if read.decided.rule.object_class == taken.object_class:
@@ -62,4 +66,4 @@ def _why(read: Readings, taken: Chance) -> str:
     for one in found:
         if one.rule.object_class == taken.object_class:
             return str(one.words)
-    return "evidence: all that its record says, weighed together"
+    return f"evidence: {WEIGHED}"

@@ -5,6 +5,7 @@ import os
 import shlex
 import sys
 import textwrap
+from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -332,11 +333,12 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     listed("rejected", [f"{r.message}; {r.remedy}" for r in reading.rejected])
     listed("suspicion", [f"{s.message}; {s.remedy}" for s in reading.suspicions])
     listed("choice", [f"{s.message}; {s.remedy}" for s in reading.choices])
-    listed("problem", _problems(reading))
+    listed("problem", _kinds(reading))
     if done.changes is None:
         return
     c = done.changes.counts
-    listed("new", list(done.changes.added))
+    if c.added < c.after:
+        listed("new", list(done.changes.added))
     listed("gone", list(done.changes.removed))
     _changed(done.changes)
     click.echo(f"inventory: {counted(c.after, 'object')} ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
@@ -364,6 +366,18 @@ def _problems(reading: "Reading") -> list[str]:
         for item, place in zip(reading.items, reading.places, strict=True)
         for p in item.problems
     ]
+
+
+def _kinds(reading: "Reading") -> list[str]:
+    """Return the doubts by what mends them, the most frequent first, each with how many they are and one of them."""
+    count: Counter[tuple[str, str]] = Counter()
+    first: dict[tuple[str, str], str] = {}
+    for item, (row, _) in zip(reading.items, reading.places, strict=True):
+        for one in item.problems:
+            kind = (one.field, one.remedy)
+            count[kind] += 1
+            first.setdefault(kind, f"row {row}, {item.object_number}: {one.field}: {one.message}; {one.remedy}")
+    return [first[kind] + (f" ({n:,} such)" if n > 1 else "") for kind, n in count.most_common()]
 
 
 def _changed(changes: "Difference") -> None:

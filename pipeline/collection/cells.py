@@ -385,7 +385,8 @@ class Cells:
 
 
 def _in_unit(unit: str) -> str:
-    return "" if unit == "-" else f" in {unit}, or with its unit"
+    named = {"in": "inches", "ft": "feet"}.get(unit, unit)
+    return "" if unit == "-" else f" in {named}, or with its unit"
 
 
 def _pairs(text: str, decimal: str) -> list[tuple[float, float]] | None:

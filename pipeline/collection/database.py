@@ -122,7 +122,7 @@ def _share(engine: Engine) -> None:
 
 
 class DatabaseFileError(KourosError):
-    """The file of the database cannot be written, most often because the disk is full."""
+    """The file of the database cannot be read or written: the disk is full, or another program holds it."""
 
     exit_code = 1
 
@@ -195,13 +195,18 @@ _SMALL = (
 
 
 def _say_no_room(context: ExceptionContext) -> None:
-    """Raise what a full disk is everywhere else for what SQLite says of it, and what is damage."""
+    """Raise what a full disk is everywhere else for what SQLite says of it, what is damage, and what others hold."""
     problem, engine = context.original_exception, context.engine
     file = "" if engine is None else engine.url.database or ""
     # Of the extended codes the last eight bits are the kind.
     kind = getattr(problem, "sqlite_errorcode", 0) & 0xFF
     if kind in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB):
         raise _damaged(file, problem) from problem
+    if kind in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+        raise DatabaseFileError(
+            f"the database {file} is held by another program, and was for {PATIENCE_S:g} s: close what has it open, "
+            "such as a viewer of databases or a backup, then run again"
+        ) from problem
     if kind == sqlite3.SQLITE_FULL:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), file) from problem
     if kind in (sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN) and os.access(file, os.R_OK | os.W_OK):

@@ -11,7 +11,7 @@ from unicodedata import normalize
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.errors import InputError
-from pipeline.quantities import LENGTHS, MASSES
+from pipeline.quantities import LENGTHS, MASSES, G
 
 LONGEST = 60
 """Characters of a cell at most: what is longer is no number."""
@@ -44,10 +44,11 @@ _BARE = re.compile(r"\d+\s*/\s*\d+(?!\D*\d)")
 """A fraction that nothing with figures follows."""
 _PARTS = frozenset({2, 3, 4, 5, 6, 8, 10, 12, 16, 32, 64})
 """What people part a unit into: 30/40 are two numbers."""
+_PSI = MASSES["lb"] * G / LENGTHS["in"] ** 2
 _OTHERS = {
     "deg": {"": 1.0, "°": 1.0, "deg": 1.0, "degree": 1.0, "degrees": 1.0, "grad": 1.0, "gradi": 1.0, "grados": 1.0},
     "Hz": {"": 1.0, "hz": 1.0, "hertz": 1.0, "/s": 1.0},
-    "Pa": {"": 1.0, "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "n/mm2": 1e6, "n/mm²": 1e6},
+    "Pa": {"": 1.0, "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "n/mm2": 1e6, "n/mm²": 1e6, "psi": _PSI, "ksi": 1e3 * _PSI},
     "-": {"": 1.0, "%": 0.01},
 }
 """Units that a cell may name for what is neither a length nor a mass, and what a number of each is in SI."""

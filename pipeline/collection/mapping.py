@@ -27,7 +27,7 @@ from pipeline.collection.mapping_parts import Display, Holds, Images, MappingPar
 from pipeline.collection.record import CHOICES, KINDS, REQUIRED, units_of
 from pipeline.collection.sources.base import Name, Source, SourceSettings
 from pipeline.collection.sources.registry import SOURCES, source_named
-from pipeline.errors import InputError
+from pipeline.errors import InputError, mends_toml
 from pipeline.quantities import LENGTHS, MASSES
 from pipeline.resources import small_text
 
@@ -282,7 +282,7 @@ def load_mapping(path_or_preset_name: str | Path) -> Mapping:
     except UnicodeDecodeError as fault:
         raise MappingError(f"{name}: byte {fault.start} is not UTF-8; save the mapping as UTF-8") from fault
     except (tomllib.TOMLDecodeError, RecursionError) as fault:
-        raise MappingError(f"{name}: not TOML: {fault}; quote texts and write one key a line") from fault
+        raise MappingError(f"{name}: not TOML: {fault}; {mends_toml(fault)}") from fault
     except OSError as fault:
         raise MappingError(f"{name}: cannot be read: {fault.strerror}; check its permissions and its size") from fault
     try:

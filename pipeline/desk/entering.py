@@ -3,7 +3,7 @@
 import csv
 import hashlib
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from datetime import date
@@ -17,16 +17,19 @@ from pydantic import ValidationError
 from pipeline.analysis.house.questions import VOCABULARIES
 from pipeline.analysis.house.rule import QUANTITIES, HouseRule
 from pipeline.analysis.survey import measurables
+from pipeline.collection.consistency import contradictions
 from pipeline.collection.inventory import add_sheet
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
+from pipeline.collection.record import plausible, to_records
 from pipeline.desk.errors import DeskError
 from pipeline.desk.numbers import read_number
 from pipeline.desk.object_facts import vocabulary
 from pipeline.errors import InputError
 from pipeline.operations.workspace import LockedError, Workspace, locked
 from pipeline.records import Item
-from pipeline.report.language import said
+from pipeline.report.assumed import assumed
+from pipeline.report.language import _, said
 from pipeline.report.units import Units
 from pipeline.resources import small_text
 from pipeline.settings import Settings
@@ -37,6 +40,7 @@ PATIENCE = 8.0
 """Seconds that somebody waits for another to have written."""
 
 _ONE_AT_A_TIME = Lock()
+_SIDES = dict.fromkeys(("height_m", "width_m", "depth_m"))
 
 
 class CellsError(DeskError):
@@ -132,6 +136,7 @@ def enter(workspace: Workspace, item: Item, typed: Mapping[str, str], who: str, 
         raise CellsError({"": "; ".join(f"{r.message}; {r.remedy}" for r in reading.rejected)})
     read = reading.items[0]
     problems = {p.field: f"{labels().get(p.field, p.field)}: {p.message}; {p.remedy}" for p in read.problems}
+    problems |= _against_the_record(item, read, values, units)
     if problems:
         raise CellsError(problems)
     said_by = tuple(replace(of, written=words.get(of.field, of.written)) for of in read.provenance)
@@ -162,10 +167,37 @@ def _values(typed: Mapping[str, str], units: Units) -> tuple[dict[str, str], dic
             continue
         try:
             value, words[one.field] = read_number(text, one.unit, units)
-            values[one.field] = repr(value)
         except InputError as problem:
             wrong[one.field] = f"{label}: {problem}"
+            continue
+        limits = plausible().get(one.field)
+        if limits is not None and not limits.low <= value <= limits.high:
+            cannot = (
+                _("%(typed)s is too little to be true: measure it again, or leave the cell empty")
+                if value < limits.low
+                else _("%(typed)s is too much to be true: measure it again, or leave the cell empty")
+            )
+            wrong[one.field] = f"{label}: {cannot % {'typed': repr(text[:40])}}"
+        else:
+            values[one.field] = repr(value)
     return values, words, wrong
+
+
+def _against_the_record(item: Item, read: Item, filled: Collection[str], units: Units) -> dict[str, str]:
+    """Return by field why what was filled in cannot be beside what is recorded: pounds typed as tonnes, say."""
+    before, now = to_records([item, read])
+    record = {**before, **{name: now[name] for name in filled}}
+    found = {}
+    for name, problem in contradictions(record):
+        if not name or not {name, *_SIDES}.intersection(filled):
+            continue
+        told = assumed(f"{problem.message}; {problem.remedy}", units)
+        if name == "mass_kg":
+            box = " × ".join(units.text(float(record[side]), "m") for side in _SIDES)
+            cannot = _("%(mass)s in %(box)s cannot be: weigh it again, and enter its size with it")
+            told = cannot % {"mass": units.text(float(record[name]), "kg"), "box": box}
+        found[name if name in filled else ""] = f"{labels().get(name, name)}: {told}"
+    return found
 
 
 def rules_version(config: Path) -> str:

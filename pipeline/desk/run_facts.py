@@ -21,6 +21,7 @@ from pipeline.planning.plan import ErrandPlan, gallery_order
 from pipeline.quantities import sorting_key
 from pipeline.records import Page, RunRecord
 from pipeline.records.likelihood import CLASS
+from pipeline.report.files.exports import NOT_SHOWN
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.plan_files import gathered_from
 from pipeline.report.files.walk_sheet import sheet_file
@@ -31,6 +32,9 @@ from pipeline.report.pages.views import State
 from pipeline.store.pages import Places, load_places
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import load_head
+
+ASIDE = "aside"
+"""The state, as pages call it, of what is not on display and was not assessed."""
 
 SHOWN = 50
 """Objects on a page of what a search finds."""
@@ -235,6 +239,8 @@ def _listed(folder: Path) -> Iterator[ListedObject]:
     with pq.ParquetFile(file) as table:
         for batch in table.iter_batches(columns=list(_COLUMNS)):
             columns: list[list[Any]] = [batch.column(name).to_pylist() for name in _COLUMNS]
+            at = _COLUMNS.index("state")
+            columns[at] = [ASIDE if state == NOT_SHOWN else state for state in columns[at]]
             # What has no place among all comes last.
             columns[-1] = [1 << 60 if rank is None else rank for rank in columns[-1]]
             yield from (ListedObject(*row) for row in zip(*columns, strict=True))

@@ -324,12 +324,13 @@ def _objects(
     reachable = stock.capacities.reachable
     known = np.asarray(reachable.any(axis=0)).tolist()
     harm, falls = expected[KINDS.index(HARM)], expected[KINDS.index(Harm.FALLS.value)]
-    possible = sampling.edges[2]
+    possible, unlikely = sampling.edges[2:]
     rows = zip(
         stock.numbers, stock.titles, stock.galleries, stock.cases, stock.floors, known, harm.tolist(),
         expected.T.tolist(), reachable.T.tolist(), moved.tolist(), stock.value.tolist(), stock.danger.tolist(),
         (harm * stock.value + falls * stock.danger).tolist(), (moved >= possible).tolist(),
-        ((stock.danger >= DANGEROUS) & (moved + falls >= possible)).tolist(), strict=True,
+        # What cannot fall hurts nobody: a heavy armchair that has moved needs no making safe.
+        ((stock.danger >= DANGEROUS) & (moved + falls >= possible) & (falls >= unlikely)).tolist(), strict=True,
     )  # fmt: skip
     out = []
     for at, (

@@ -11,6 +11,7 @@ import numpy as np
 from pipeline.errors import InputError
 from pipeline.motions.blas import one_thread
 from pipeline.motions.candidates import CandidateRecord, FoundRecords, read_candidates
+from pipeline.motions.doubts import LARGEST_SCALE
 from pipeline.motions.errors import refusal
 from pipeline.motions.selection import Aim, ChosenRows, choose, correlation
 from pipeline.motions.spectra import psa
@@ -22,9 +23,6 @@ PERIODS = (0.1, 2.0)
 
 COUNT = 11
 """Motions of a suite unless the caller says otherwise (ASCE/SEI 7-22, 16.2.2)."""
-
-LARGEST_SCALE = 4.0
-"""By which a record is scaled at most unless the caller says otherwise."""
 
 ACCEPTED = 0.10
 """How far a suite's mean, and its 84th percentile over its mean, may be off the target's at any period."""

@@ -1,6 +1,8 @@
 """Doubts among the steps of a motion: what is used all the same, and what whoever approves it has to know."""
 
+import re
 from collections.abc import Sequence
+from math import prod
 
 MAY_HOLD = "may hold "
 """Begins the doubt that a record has a second earthquake in the coda of the first."""
@@ -19,6 +21,16 @@ FACTOR = ", and does not say whether its numbers have it already: scale in the m
 
 NO_RECORD = "; it may be a spectrum or an envelope, where it is no push of a test"
 """Ends what is said of numbers that never cross zero."""
+
+LARGEST_SCALE = 4.0
+"""By which a record is scaled at most without a doubt: a stronger earthquake has other periods and another length."""
+
+_SCALED = re.compile(r"scaled by (\S+) \(")
+
+
+def scale_of(steps: Sequence[str]) -> float:
+    """Return by how much a motion was scaled, 1 where it was not."""
+    return prod(float(found[1]) for found in map(_SCALED.match, steps) if found)
 
 
 def doubts(steps: Sequence[str]) -> tuple[str, ...]:
@@ -43,4 +55,11 @@ def doubts(steps: Sequence[str]) -> tuple[str, ...]:
         elif FACTOR in step:
             # Of each component.
             found.append(step.partition(": ")[2])
+    scale = scale_of(steps)
+    if scale != 0.0 and not 1.0 / LARGEST_SCALE <= abs(scale) <= LARGEST_SCALE * (1.0 + 1e-9):
+        found.append(
+            f"scaled by {scale:.3g}: so much {'stronger' if abs(scale) > 1.0 else 'weaker'} than it was, it stands for "
+            f"no earthquake; take a record that needs a factor of 1/{LARGEST_SCALE:g} to {LARGEST_SCALE:g}, such as "
+            "`kouros motions select` chooses"
+        )
     return tuple(dict.fromkeys(found))

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError, model_validator
 
-from pipeline.errors import InputError
+from pipeline.errors import InputError, mends_toml
 from pipeline.motions.errors import MotionError, refusal
 from pipeline.motions.record import (
     PRINTABLE,
@@ -309,7 +309,7 @@ def load_manifest(folder: str | Path, *, begun: bool = False) -> Manifest:
     try:
         data = tomllib.loads(small_text(file))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise refusal(file, "TOML", str(error), "mend the line; the file is TOML in UTF-8") from error
+        raise refusal(file, "TOML", str(error), f"{mends_toml(error)}; the file is TOML in UTF-8") from error
     except OSError as error:
         why = f"cannot be read: {error.strerror or error}"
         raise refusal(file, "file", why, "check its permissions and its size") from error

@@ -13,6 +13,7 @@ from pipeline.motions.site import Level, Site, levels_at
 from pipeline.motions.summary import summaries
 from pipeline.records import Item, MotionSummary
 from pipeline.records.hazard import HazardCurve
+from pipeline.records.phrases import ON_GROUND
 from pipeline.settings import Floors, Settings, SettingsError
 
 
@@ -138,9 +139,7 @@ def strangers(floors: Floors, galleries: Iterable[str]) -> list[str]:
 def notes(settings: Settings, site: Site, galleries: Collection[str]) -> list[str]:
     """Say how each floor's motion was obtained and which galleries stand where."""
     if not site.floors:
-        return [
-            "Every gallery is taken to stand on the ground: the manifest names no upper floors, which would shake more."
-        ]
+        return [f"{ON_GROUND()}."]
     out = []
     for table in site.manifest.floor:
         on = sorted(name for name in galleries if settings.floors.of(name) == table.name)

@@ -33,8 +33,9 @@ from pipeline.night.stocks import StockTerms, told_floors
 from pipeline.night.unit_tasks import ChartTask
 from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.workspace import Workspace
+from pipeline.quantities import G
 from pipeline.records import Model, Progress, RunRecord, Scene
-from pipeline.report import Units
+from pipeline.records import phrases as say
 from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
@@ -88,7 +89,7 @@ def run_context(
     # Samples tell it for nothing.
     surveyed = _asked(settings.report.survey, bool(settings.likelihood.samples) or shown <= SURVEYED)
     info = latest_import(workspace.engine)
-    said = [_level_note(level, Units(settings.report.length)) for level in site.levels]
+    said = [_level_note(level) for level in site.levels]
     said += notes(settings, site, index.objects.galleries)
     if settings.analysis.fragility and not fragile:
         said.append(_left_out("From what shaking each object fails", "[analysis] fragility = true"))
@@ -232,30 +233,27 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
     }
 
 
-def _level_note(level: Level, units: Units) -> str:
-    period = "" if level.return_period_years is None else f", return period {level.return_period_years:g} years"
-    answers = (
-        f"approved by {level.approved_by} on {level.approved_on}"
-        if level.approved_by
-        else "no engineer has approved these motions"
-    )
-    number = len(level.motions)
-    how = "1 motion" if number == 1 else f"the {level.combine} of {number} motions"
+def _level_note(level: Level) -> str:
+    """Say how strong the motions of a level are, and who answers for them."""
+    named, many = level.name, len(level.motions)
     # What topples an object is velocity more than acceleration: both are said.
-    how += "".join(
-        f", {title} {_between([one.measures[key] for one in level.motions], unit, units)}"
-        for key, title, unit in (("pga", "PGA", "m/s2"), ("pgv", "PGV", "m/s"))
+    pga = [one.measures["pga"] / G for one in level.motions]
+    pgv = [one.measures["pgv"] for one in level.motions]
+    if many == 1:
+        told = [say.LEVEL_ALONE(case=named, pga=pga[0], pgv=pgv[0])]
+    else:
+        phrase = say.LEVEL_MEAN if level.combine == "mean" else say.LEVEL_WORST
+        ends = {"least_pga": min(pga), "pga": max(pga), "least_pgv": min(pgv), "pgv": max(pgv)}
+        told = [phrase(case=named, motions=float(many), **ends)]
+    if level.return_period_years is not None:
+        told.append(say.LEVEL_PERIOD(years=level.return_period_years))
+    told += [level.caution] if level.caution else []
+    for phrase, step in ((say.LEVEL_FLAT, NO_VERTICAL), (say.LEVEL_ESTIMATED, ESTIMATED)):
+        which = [one.motion.name for one in level.motions if step in one.motion.steps]
+        told += [phrase(words=", ".join(which))] if which else []
+    told.append(
+        say.LEVEL_APPROVED(words=level.approved_by, case=str(level.approved_on))
+        if level.approved_by
+        else say.LEVEL_UNANSWERED()
     )
-    caution = f"; {level.caution}" if level.caution else ""
-    flat = [one.motion.name for one in level.motions if NO_VERTICAL in one.motion.steps]
-    if flat:
-        caution += f"; no vertical shaking was recorded, and none is assumed: {', '.join(flat)}"
-    made = [one.motion.name for one in level.motions if ESTIMATED in one.motion.steps]
-    if made:
-        caution += f"; no vertical shaking was recorded, and an estimate is assumed: {', '.join(made)}"
-    return f"Level {level.name}{period}: {how}{caution}; {answers}."
-
-
-def _between(values: Sequence[float], unit: str, units: Units) -> str:
-    low, high = units.number(min(values), unit), units.text(max(values), unit)
-    return high if len(values) == 1 else f"{low} to {high}"
+    return f"{'; '.join(told)}."

@@ -74,5 +74,10 @@ def to_look_at(reading: Mapping[str, Any] | None) -> bool:
 
 
 def unsaid(shown: int) -> str:
-    """Return that no column says what is on display."""
+    """Return that no column says what is on display, or, where nothing is, why and what mends it."""
+    if not shown:
+        return (
+            "nothing is on display, and a night would have nothing to assess: no record says where its object is; "
+            'export the current locations, or write constant = "Gallery 1" in place of column under [columns.gallery]'
+        )
     return f"no column says what is on display: all {counted(shown, 'object')} are taken to be"

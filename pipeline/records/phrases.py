@@ -151,6 +151,44 @@ NO_ISOLATOR_FOR_ALL = Clause(
     "no isolator of the catalogue passes on little enough within its stroke for all {objects:-} objects of its case"
 )
 
+# How strong each level is.
+LEVEL_ALONE = Clause("Level {case}: 1 motion, PGA {pga:g~3}, PGV {pgv:cm/s~3}")
+LEVEL_MEAN = Clause(
+    "Level {case}: the mean of {motions:-} motions, PGA {least_pga:g~3} to {pga:g~3}, PGV {least_pgv:cm/s~3} to "
+    "{pgv:cm/s~3}"
+)
+LEVEL_WORST = Clause(
+    "Level {case}: the worst of {motions:-} motions, PGA {least_pga:g~3} to {pga:g~3}, PGV {least_pgv:cm/s~3} to "
+    "{pgv:cm/s~3}"
+)
+LEVEL_PERIOD = Clause("return period {years:-} years")
+LEVEL_APPROVED = Clause("approved by {words} on {case}")
+LEVEL_UNANSWERED = Clause("no engineer has approved these motions")
+ON_GROUND = Clause(
+    "Every gallery is taken to stand on the ground: the manifest names no upper floors, which would shake more"
+)
+LEVEL_FLAT = Clause("no vertical shaking was recorded, and none is assumed: {words}")
+LEVEL_ESTIMATED = Clause("no vertical shaking was recorded, and an estimate is assumed: {words}")
+
+# What is doubtful in a museum's texts of dimensions.
+TAKEN_FOR_WHOLE = Clause("the size of '{words}' is taken for that of the whole object")
+SAY_WHOSE = Clause("measure the whole object, or write which size is whose, such as Overall: H 10 x W 5 cm")
+NOT_UNDERSTOOD = Clause("not understood: '{words}'")
+WRITE_SIZES = Clause("write it as in H 10 x W 5 x D 3 cm, or see that nothing in it matters")
+WRITE_OR_EMPTY = Clause("write it as in H 10 x W 5 x D 3 cm, or leave it empty")
+NO_SIZE_IN_TEXT = Clause("the text '{words}' holds no dimension that can be read")
+FIRST_BELIEVED = Clause("{first:m~4} against {second:m~4}: the first is believed, as the one that was measured")
+SECOND_CONVERTED = Clause("the second is usually its conversion")
+MEASURE_AND_CORRECT = Clause("measure it again, and correct the text in the museum's database")
+WITH_BASE_UNSAID = Clause("whether the height includes that of the base, the height '{words}', is not said")
+MEANING_UNKNOWN = Clause("what '{words}' means is not known")
+NO_UNIT = Clause("no unit is written, so there is no value")
+WRITE_UNIT = Clause('write the unit into the text, or say it in the mapping, [dimensions] unit = "..."')
+CORRECT_TEXT = Clause("correct the text in the museum's database")
+NO_LOCATION = Clause("the location is empty")
+RECORD_LOCATION = Clause("record its current location")
+NOT_SHOWN_UNTIL_THEN = Clause("until then it counts as not on display")
+
 # What stands in the record beside a sheet that was filled in.
 SHEET_LENGTH = Clause("the museum's record says {recorded:m~6}, the sheet {sheet} says {filled:m~6}, which is used")
 SHEET_MASS = Clause("the museum's record says {recorded:kg~6}, the sheet {sheet} says {filled:kg~6}, which is used")

@@ -64,6 +64,7 @@ _RULE = re.compile(
     re.DOTALL | re.VERBOSE,
 )
 _THIN = "\u202f"
+_SI_OF = {"cm/s": "m/s", "MPa": "Pa", "GPa": "Pa"}
 _SIGNS = {"": "", "°": "°", "%": "\u00a0%", "kg/m2": f"{_THIN}kg/m²", "kg/m3": f"{_THIN}kg/m³"}
 
 
@@ -129,6 +130,11 @@ def rule_words(rule: str) -> str:
     return told
 
 
+def reason_words(why: str) -> str:
+    """Return why an object is of its class as `rule_words` does, without the name of the rule."""
+    return rule_words(f"_: {why}").removeprefix("_: ")
+
+
 def sourced(text: str) -> str:
     """Return where a number or a measure comes from, its tables by their names in the reader's language.
 
@@ -187,8 +193,8 @@ def _filled(name: str, found: str | Number, units: Units) -> str:
 
 
 def _number(found: Number, units: Units) -> str:
-    of = "m" if found.unit in LENGTHS else "m/s" if found.unit == "cm/s" else found.unit
-    if of in ("m", "m/s") or (of in MASSES_OF and units.pounds):
+    of = _SI_OF.get(found.unit, "m" if found.unit in LENGTHS else found.unit)
+    if of in ("m", "m/s") or (units.pounds and (of in MASSES_OF or of == "Pa")):
         value, *ends = found.si
         return units.text(value, of) + (f" ({units.bare(ends[0], ends[1], of)})" if ends else "")
     best, *span = (local(text.replace("-", "−")) for text in found.texts)

@@ -8,6 +8,7 @@ from typing import IO
 
 from pipeline.analysis.classify import object_classes
 from pipeline.analysis.furniture import DAMPING, FREQUENCY, LEVEL_ERROR, WHAT_HANGS
+from pipeline.analysis.object_class import WEIGHED
 from pipeline.analysis.section import OF_CLASS
 from pipeline.analysis.sizes import SIZES
 from pipeline.analysis.usual import ON_ANY
@@ -143,7 +144,7 @@ def _names() -> Iterator[str]:
     names += [STORED, *object_classes(), *Support, *Anchorage]
     yield from (bare(name) for name in names)
     yield from ("width (or diameter)", "height or suspension length", "height of the centre of gravity")
-    yield from ("width of its weakest section", UNTOLD_ISOLATOR)
+    yield from ("width of its weakest section", UNTOLD_ISOLATOR, WEIGHED)
     yield from map(bare, (FREQUENCY, DAMPING, LEVEL_ERROR))
     yield from (f"no generic model applies: it {row['why']}" for row in table("classes") if row["models"] == "none")
     # Whoever chooses one of them at the desk reads its title.

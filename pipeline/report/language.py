@@ -221,6 +221,9 @@ def ngettext(one: str, many: str, number: int) -> str:
 _PARTS = (re.compile(r"(?<=[.!?]) "), re.compile(r"(?<=[;:]) "))
 """Where texts are put together: of sentences, and these of clauses."""
 
+_TOGETHER = 3
+"""Sentences, or clauses, that one phrase of a catalogue has at most."""
+
 
 def said(text: str, parts: Sequence[re.Pattern[str]] = _PARTS) -> str:
     """Return a text of the run (a title, sentences with placeholders) in the reader's language.
@@ -234,4 +237,15 @@ def said(text: str, parts: Sequence[re.Pattern[str]] = _PARTS) -> str:
     whole = _(text)
     if whole != text or not parts:
         return whole
-    return " ".join(said(part, parts[1:]) for part in parts[0].split(text))
+    left, told = parts[0].split(text), []
+    while left:
+        # A phrase may have several sentences: the longest that a catalogue has is said as one.
+        for many in range(min(len(left), _TOGETHER), 1, -1):
+            phrase = " ".join(left[:many])
+            if (known := _(phrase)) != phrase:
+                told.append(known)
+                del left[:many]
+                break
+        else:
+            told.append(said(left.pop(0), parts[1:]))
+    return " ".join(told)

@@ -23,7 +23,18 @@ _RATIOS = ("-", "")
 _POWERS = {"m": ("", 1), "m2": ("²", 2), "m3": ("³", 3), "m/s": ("/s", 1)}
 _MASS_PER = {"kg": ("lb", 0), "kg/m2": ("lb/ft²", 2), "kg/m3": ("lb/ft³", 3)}
 """Masses for who thinks in feet: the unit, and of which power of a foot."""
+_POUND = MASSES["lb"] * G
+"""Newtons that a pound weighs."""
+_FORCES = {
+    "N": ("lbf", 1.0 / _POUND),
+    "N m": ("lbf ft", 1.0 / (_POUND * LENGTHS["ft"])),
+    "N/m": ("lbf/in", LENGTHS["in"] / _POUND),
+    "Pa": ("psi", LENGTHS["in"] ** 2 / _POUND),
+}
+"""Forces, moments, stiffnesses and stresses for who thinks in feet."""
 _METRIC = {"kg/m2": "kg/m²", "kg/m3": "kg/m³"}
+_NONE = 1e-3
+"""Of the high end of a range of lengths, less than half a millimetre too: what its low end is nothing beside."""
 _THIN = "\u202f"
 
 
@@ -69,8 +80,8 @@ def _digits(value: float) -> str:
 class Units:
     """How numbers are written for one reader.
 
-    length : "cm" (default), "mm", "m", "in" or "ft"; areas, volumes and velocities follow it, and masses are in pounds
-             where it is in or ft
+    length : "cm" (default), "mm", "m", "in" or "ft"; areas, volumes and velocities follow it, and masses, forces and
+             stresses are in pounds where it is in or ft
     raises : ReportError for another unit of length
     """
 
@@ -119,6 +130,7 @@ class Units:
 
     def pair(self, low: float, high: float, unit: str) -> str:
         """Write a range, such as "9 to 14 cm"; one number where both read the same."""
+        low = _least(low, high, unit)
         first, last = self.text(low, unit), self.text(high, unit)
         if first == last:
             return last
@@ -128,6 +140,7 @@ class Units:
 
     def bare(self, low: float, high: float, unit: str) -> str:
         """Write a range without its unit, which stands before it: "9 to 14"; one number where both read the same."""
+        low = _least(low, high, unit)
         first, last = self.number(low, unit), self.number(high, unit)
         return last if first == last else _("%(low)s to %(high)s") % {"low": first, "high": last}
 
@@ -160,6 +173,11 @@ class Units:
         return "".join(parts)
 
 
+def _least(low: float, high: float, unit: str) -> float:
+    """Return the low end of a range, 0 where it is a length that nobody could tell from none: "0 to 43 cm"."""
+    return 0.0 if unit == "m" and abs(low) < min(5e-4, _NONE * abs(high)) else low
+
+
 @lru_cache(maxsize=1024)
 def _shown(length: str, unit: str) -> tuple[str, float]:
     """Return the reader's unit for an SI unit, and what a number in that is multiplied by."""
@@ -169,6 +187,8 @@ def _shown(length: str, unit: str) -> tuple[str, float]:
     if unit in _MASS_PER and length in ("in", "ft"):
         symbol, power = _MASS_PER[unit]
         return symbol, LENGTHS["ft"] ** power / MASSES["lb"]
+    if unit in _FORCES and length in ("in", "ft"):
+        return _FORCES[unit]
     return _FIXED.get(unit, (_METRIC.get(unit, unit), 1.0))
 
 

@@ -12,7 +12,7 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError, available_timezones
 from pydantic import ConfigDict, Field, RootModel, ValidationError, field_validator, model_validator
 
 from pipeline.analysis.house.rule import HouseRule
-from pipeline.errors import InputError
+from pipeline.errors import InputError, mends_toml
 from pipeline.records import Numerics, Sampling
 from pipeline.resources import small_text
 from pipeline.settings.operations import Hooks, LimitSettings, Logs, Retention
@@ -429,7 +429,7 @@ def load_settings(file: str | Path) -> Settings:
             f"{where}: cannot be read ({problem}); check its permissions, its size, and that it is UTF-8"
         ) from problem
     except (tomllib.TOMLDecodeError, RecursionError) as problem:
-        raise SettingsError(f"{where}: is not valid TOML ({problem}); mend that line") from problem
+        raise SettingsError(f"{where}: is not valid TOML ({problem}); {mends_toml(problem)}") from problem
     for key in ("home", "rehearsal"):
         if key in data:
             raise SettingsError(f"{where}: key {key!r} is not a setting; remove it")

@@ -33,7 +33,10 @@ def current(engine: Engine) -> str | None:
         with engine.connect() as connection:
             return _current(connection)
     except SQLAlchemyError as error:
-        raise StoreError(f"{_where(engine)} cannot be read: {error}") from error
+        said = getattr(error, "orig", None) or error
+        raise StoreError(
+            f"{_where(engine)} cannot be read: {said}; see that its server runs, and that it can be reached from here"
+        ) from error
 
 
 def upgrade(engine: Engine) -> None:

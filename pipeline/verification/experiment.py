@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, ValidationError, model_validator
 
-from pipeline.errors import InputError
+from pipeline.errors import InputError, mends_toml
 from pipeline.motions.filtering import highpass
 from pipeline.motions.intensity import measures
 from pipeline.motions.reading import UNITS
@@ -231,7 +231,7 @@ def _said(file: Path) -> ExperimentTable:
     except OSError as problem:
         raise ExperimentError(f"{file}: cannot be read: {problem.strerror}; see whether it is a folder") from problem
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as problem:
-        raise ExperimentError(f"{file}: no TOML in UTF-8: {problem}; mend the line") from problem
+        raise ExperimentError(f"{file}: no TOML in UTF-8: {problem}; {mends_toml(problem)}") from problem
     try:
         return ExperimentTable.model_validate_json(json.dumps(data, default=str))
     except ValidationError as problem:

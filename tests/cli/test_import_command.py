@@ -176,3 +176,43 @@ def test_a_survey_is_printed_filled_in_and_read_back(run: Run, tmp_path: Path) -
     assert night.returncode == 0, night.stderr
     items = {item.object_number: item for item in read_inventory(open_database(tmp_path / "kouros.sqlite"))}
     assert items["3"].height_m == 0.41
+
+
+def test_doubts_are_told_by_what_mends_them_and_a_longitude_is_none(run: Run, tmp_path: Path) -> None:
+    """Truth by hand: of five rows three have no place, and where on the earth they are is nobody's length."""
+    rows = ["1,A,Room 1,41.9,8.7,10 cm", "2,A,,41.9,8.7,10 cm", "3,A,,41.9,8.7,10 cm", "4,A,,41.9,8.7,no size here"]
+    mapping = """[source]
+format = "csv"
+encoding = "utf-8"
+delimiter = ","
+[museum]
+name = "Ours"
+[columns.object_number]
+column = "number"
+[columns.title]
+column = "title"
+[columns.gallery]
+column = "place"
+[dimensions]
+columns = ["size"]
+"""
+    (tmp_path / "m.toml").write_text(mapping, encoding="utf-8")
+    (tmp_path / "e.csv").write_text("\n".join(["number,title,place,lat,long,size", *rows, ""]), encoding="utf-8")
+    told = run("import", "e.csv", "--mapping", "m.toml", "--dry-run").stdout
+    assert told.count("the location is empty") == 1
+    assert "row 2, 2: gallery: the location is empty" in told
+    assert "(3 such)" in told
+    assert "'long'" not in told
+    assert "new: 1" not in told
+    # Without a latitude beside it, it may be a length.
+    (tmp_path / "e.csv").write_text("\n".join(["number,title,place,up,long,size", *rows, ""]), encoding="utf-8")
+    assert (
+        "column 'long': its '8.7' is in no field" in run("import", "e.csv", "--mapping", "m.toml", "--dry-run").stdout
+    )
+
+
+def test_a_museum_without_places_is_told_that_nothing_is_on_display(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "e.csv").write_text("object_number,gallery,title\n1,,A\n2,,B\n", encoding="utf-8")
+    told = run("import", "e.csv", "--mapping", "kouros", "--dry-run").stdout
+    assert "nothing is on display, and a night would have nothing to assess" in told
+    assert 'constant = "Gallery 1" in place of column' in told

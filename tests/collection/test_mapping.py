@@ -156,7 +156,12 @@ def test_an_unknown_name_lists_the_presets() -> None:
 
 @pytest.mark.parametrize(
     ("content", "message"),
-    [(b"[source\n", "not TOML.*line 1"), (b'name = "\xff"', "byte 8 is not UTF-8"), (b"", "source: Field required")],
+    [
+        (b"[source\n", "not TOML.*line 1.*quote texts"),
+        (b"[display]\n[source]\n[display]\n", "not TOML.*line 3.*below the first"),
+        (b'name = "\xff"', "byte 8 is not UTF-8"),
+        (b"", "source: Field required"),
+    ],
 )
 def test_files_that_are_no_mapping(content: bytes, message: str, tmp_path: Path) -> None:
     path = tmp_path / "broken.toml"

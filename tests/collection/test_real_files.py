@@ -98,7 +98,7 @@ def test_the_weight_of_a_part_is_not_the_objects() -> None:
 def test_readings_that_contradict_each_other_are_told() -> None:
     """2 1/4 inches stand beside 4 cm."""
     first, second = item("moma_rows", "2284.2001.1-11").problems
-    assert (first.field, first.message[:24]) == ("dimensions", "0.05715 against 0.04 m: ")
+    assert (first.field, first.message[:24]) == ("dimensions", "0.05715 m against 0.04 m")
     assert second.message == "the size of '1 (round dish)' is taken for that of the whole object"
 
 

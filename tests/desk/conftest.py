@@ -34,7 +34,8 @@ def night_behind() -> Path:
     def make(around: Path) -> None:
         folder = around / "museum"
         hostile = {**vases(1, 1)[0], "object_number": HOSTILE, "title": "<script>document.title='pwned'</script>"}
-        museum_of(folder, [*vases(), *PAINTINGS, hostile])
+        stored = {**vases(1, 1)[0], "object_number": "S.1", "title": "Jug in the store", "gallery": "Storage"}
+        museum_of(folder, [*vases(), *PAINTINGS, hostile, stored])
         edit(folder / "kouros.toml", 'length = "cm"', 'length = "in"')
         night(load_settings(folder / "kouros.toml"))
 

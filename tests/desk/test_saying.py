@@ -28,6 +28,17 @@ def engine_of(folder: Path):  # type: ignore[no-untyped-def]
     return open_database(load_settings(folder / "kouros.toml").database)
 
 
+def test_what_is_in_the_store_is_not_called_fine(visitor: Visitor) -> None:
+    """Nobody looked at it: a list that says "Fine" would be believed."""
+    (row,) = visitor.get("/", q="jug store").page.xpath("//*[contains(@class, 'hits')]//li")
+    assert "Not on display" in row.text_content()
+    assert "Fine" not in row.text_content()
+    (there,) = visitor.get("/", q="", state="aside").page.xpath("//*[contains(@class, 'hits')]//li")
+    assert "S.1" in there.text_content()
+    told = visitor.get("/").page.xpath("//select[@name='state']/option[@value='aside']")
+    assert told[0].text_content() == "Not on display (1)"
+
+
 def test_a_decision_is_that_of_the_command(visitor: Visitor, museum: Path) -> None:
     got = visitor.said_of("2.3", "/object/decide", kind="accept", why="case is rebuilt", until="2099-01-01")
     page = visitor.follow(got)
@@ -108,6 +119,27 @@ def test_measurements_say_who_wrote_what(visitor: Visitor, museum: Path) -> None
     assert of.written == '3 1/4"'
     assert "A. Smith" in page.text
     assert versions(engine_of(museum))[0].source == "desk, A. Smith"
+
+
+@pytest.mark.parametrize(
+    ("cells", "told"),
+    [
+        ({"m.mass_kg": "999999"}, "Mass: 1000000\u202flb in "),
+        ({"m.mass_kg": "0"}, "Mass: '0' is too little to be true: measure it again"),
+        ({"m.friction": "3"}, "Friction under the base: '3' is too much to be true: measure it again"),
+        ({"m.allowable_stress_pa": "0.1 psi"}, "is too little to be true"),
+    ],
+)
+def test_what_cannot_be_beside_its_record_is_told_in_the_words_of_the_desk(
+    cells: dict[str, str], told: str, visitor: Visitor, museum: Path
+) -> None:
+    """A vase of a foot that weighs 500 tons; and nobody with a tablet has a mapping to mend."""
+    got = visitor.said_of("1.1", "/object/measured", **cells)
+    assert told in got.alert
+    for word in ("mapping", "column", "database", "_kg", "_m"):
+        assert word not in got.alert
+    item = items_named(engine_of(museum), ["1.1"])["1.1"]
+    assert (item.mass_kg, item.friction, item.allowable_stress_pa) == (None, None, None)
 
 
 def test_a_cell_that_is_no_measure_is_marked_and_nothing_is_saved(visitor: Visitor, museum: Path) -> None:

@@ -182,6 +182,12 @@ def test_what_has_moved_and_stands_is_told_as_weaker() -> None:
     assert one.fallen < 0.01
     # Nothing is known of its mass, so that nobody is told to fear it.
     assert not one.make_safe
+    # However heavy it is, it cannot fall: nobody need make it safe before they go in.
+    heavy = replace(stock(objects, found), danger=np.array([50.0]))
+    assert not answered(heavy, shaking, Sampling(), drawn(shaking)).objects[0].make_safe
+    found.ln_capacity[[0, FALLS]] = math.log(1.0)
+    falling = replace(stock(objects, found), danger=np.array([50.0]))
+    assert answered(falling, shaking, Sampling(), drawn(shaking)).objects[0].make_safe
 
 
 def test_what_is_kept_answers_as_what_was_found() -> None:

@@ -200,3 +200,20 @@ def test_the_mean_of_fewer_than_seven_is_cautioned(three, write_manifest):
     text = (folder / "manifest.toml").read_text().replace('combine = "max"', 'combine = "mean"')
     (folder / "manifest.toml").write_text(text)
     assert "from 7 motions on" in read_site(folder).levels[0].caution
+
+
+@pytest.mark.parametrize(
+    ("steps", "told"),
+    [
+        (("scaled by 21.58 (HNE, from 0.0139 g to 0.3 g)",), "scaled by 21.6: so much stronger"),
+        (("scaled by 0.1 (as the manifest says)",), "scaled by 0.1: so much weaker"),
+        (("scaled by 3 (as the manifest says)", "scaled by 2 (again)"), "scaled by 6: so much stronger"),
+        (("scaled by 4 (as the manifest says)",), ""),
+        (("scaled by 0.25 (as the manifest says)",), ""),
+        (("baseline corrected",), ""),
+    ],
+)
+def test_a_record_that_is_scaled_far_is_doubtful(steps: tuple[str, ...], told: str) -> None:
+    """Four times and a quarter are as far as suites are chosen; nobody is told of 21.6 by its peaks alone."""
+    found = doubts(steps)
+    assert [one.partition(" than")[0] for one in found] == ([told] if told else [])

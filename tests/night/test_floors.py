@@ -115,7 +115,7 @@ def test_the_mean_of_a_level_decides(tmp_path: Path) -> None:
     assert demand(mean, "1") == pytest.approx(0.125 / slope(mean), rel=1e-4)
     # PGV: a half-sine of 0.5 s carries 2 / pi of its peak over that time, 31.2 cm/s for 0.1 g.
     (note,) = [note for note in mean.level_notes if "the mean of 7 motions" in note]
-    assert "PGA 0.05 to 0.2 g, PGV 15.6 to 62.4 cm/s" in note.replace("\u202f", " ")
+    assert "PGA 0.05 g to 0.2 g, PGV 15.6 cm/s to 62.4 cm/s" in note
     (finding,) = [f for f in mean.assessments[0].findings if f.model == "standing"]
     assert finding.motion == "pulse 6"  # the one that governs is named all the same
 

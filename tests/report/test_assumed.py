@@ -13,7 +13,8 @@ from pipeline.records import run_sentences as say
 from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES
 from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced
-from pipeline.report.language import language, speaking
+from pipeline.report.language import language, said, speaking
+from pipeline.report.pages.scene_words import left_out
 from pipeline.report.units import Units
 from tests.museum import carnegie
 
@@ -183,3 +184,32 @@ def test_rules_and_sources_are_told_in_the_readers_language(code: str) -> None:
         assert "Blevins 1979, Table 8-1" in sourced("bending: a bar (Blevins 1979, Table 8-1)")
     assert sourced("classes.csv, vessel (judgement)") == "classes.csv, vessel (judgement)"
     assert rule_words('evidence: all (named "a\'b")') == 'evidence: all (named "a\'b")'
+
+
+def test_what_a_person_reads_of_a_doubt_is_in_their_language() -> None:
+    """Truth by the catalogue of Greek: no word of English is left in what was stored as English."""
+    for text in (
+        "Level design: the mean of 11 motions, PGA 0.316 g to 0.644 g, PGV 27.7 cm/s to 96.4 cm/s; return period 475 "
+        "years; no engineer has approved these motions",
+        "the size of 'βάση' is taken for that of the whole object; measure the whole object, or write which size is "
+        "whose, such as Overall: H 10 x W 5 cm",
+        "0.25 m against 0.45 m: the first is believed, as the one that was measured; the second is usually its "
+        "conversion; measure it again, and correct the text in the museum's database",
+        "no unit is written, so there is no value; write the unit into the text, or say it in the mapping, "
+        '[dimensions] unit = "..."',
+    ):
+        with speaking(language("el", None)):
+            told = assumed(text, Units())
+        assert not re.search(r"\b(the|is|of|and|are|measure|believed|written)\b", told), told
+    with speaking(language("el", None)):
+        why = "not required: its name says that it is a vessel (named 'carafe'); it is free to move instead"
+        assert "required" not in left_out(("stress", why))
+        assert "it is free" not in left_out(("stress", why))
+        care = "Stand it here. Sleeve each tie with soft tubing where it touches: a bare line cuts into paint, gilding "
+        care += "and soft surfaces. Renew it every few years, as nylon creeps and ages."
+        assert "Renew" not in said(care)
+
+
+def test_levels_are_told_in_the_readers_units() -> None:
+    text = "Level design: the worst of 2 motions, PGA 0.3 g to 0.6 g, PGV 25.4 cm/s to 50.8 cm/s"
+    assert assumed(text, Units("in")).endswith("PGV 10\u202fin/s to 20\u202fin/s")

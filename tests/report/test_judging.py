@@ -29,7 +29,7 @@ def of(curve: Fragility, number: str = "1") -> object:
 
 
 def test_a_curve_in_words_and_numbers() -> None:
-    (view,) = fragility_views(of(CURVE), drawn=True)  # type: ignore[arg-type]
+    (view,) = fragility_views(of(CURVE), Units(), drawn=True)  # type: ignore[arg-type]
     assert view.sentence.replace("\u202f", " ") == "fails from about 0.3 g (0.2 g to 0.5 g)"
     assert view.rate == "about once in 900 years (500 to 2,000)"
     assert view.beside.replace("\u202f", " ") == "0.4 g"
@@ -52,7 +52,7 @@ def test_probabilities_of_the_lognormal() -> None:
     ("bound", "said"), [("above", "stands up to 0.3\u202fg at least"), ("below", "fails already at 0.3\u202fg or less")]
 )
 def test_a_bound_is_said_to_be_one(bound: str, said: str) -> None:
-    (view,) = fragility_views(of(replace(CURVE, bound=bound)), drawn=False)  # type: ignore[arg-type]
+    (view,) = fragility_views(of(replace(CURVE, bound=bound)), Units(), drawn=False)  # type: ignore[arg-type]
     assert view.sentence == said
     assert view.picture == ""
 
@@ -66,7 +66,7 @@ def test_years_have_two_digits(rate: float, said: str) -> None:
 
 def test_hostile_object_numbers_stay_text_in_the_picture() -> None:
     hostile = "</title><script>alert(1)</script>"
-    (view,) = fragility_views(of(CURVE, hostile), drawn=True)  # type: ignore[arg-type]
+    (view,) = fragility_views(of(CURVE, hostile), Units(), drawn=True)  # type: ignore[arg-type]
     assert etree.fromstring(str(view.picture)).findtext("title") == f"{hostile}: Rocking"
 
 
@@ -92,7 +92,7 @@ def test_a_bound_of_half_a_gallery_is_no_more_than_the_bounds_allow() -> None:
 def test_what_is_only_bounded_has_no_curve() -> None:
     """Of an object that fails at the least that was tried the probability at half a g is not that of a curve."""
     for bound in ("above", "below"):
-        (view,) = fragility_views(of(replace(CURVE, bound=bound)), drawn=True)  # type: ignore[arg-type]
+        (view,) = fragility_views(of(replace(CURVE, bound=bound)), Units(), drawn=True)  # type: ignore[arg-type]
         assert not view.picture
 
 

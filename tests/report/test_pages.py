@@ -1,5 +1,6 @@
 """The pages as files: well-formed, harmless whatever the text, linked, light, the same every time."""
 
+import re
 from base64 import b64encode
 from collections import Counter
 from dataclasses import replace
@@ -167,4 +168,5 @@ def test_inches_reach_the_pages(tmp_path: Path) -> None:
     folder = render(builder.record(), tmp_path / "r", units=Units("in")).parent
     text = "".join(p.read_text(encoding="utf-8") for p in folder.glob("*.html"))
     assert "Keep 5\u00a0⅝\u00a0in clear" in text  # 0.14 m are 5.51 in, the next eighth above
-    assert "\u202fcm" not in text
+    for unit in ("cm", "cm/s", "N", "N m", "MPa", "Pa", "kg"):
+        assert not re.search(rf"\d[\u202f\u00a0 ]{unit}[\s,.;:)<]", text), unit

@@ -34,8 +34,26 @@ def test_numbers_in_the_readers_units(value: float | None, unit: str, text: str)
 
 def test_inches() -> None:
     assert Units("in").text(0.254, "m") == "10\u202fin"
+    # 1 lbf is 4.448 N, 1 lbf ft 1.356 N m, 1 psi 6,895 Pa, by their definitions.
+    assert Units("in").text(77.4, "N") == "17.4\u202flbf"
+    assert Units("ft").text(20.8, "N m") == "15.3\u202flbf ft"
+    assert Units("in").text(532e3, "Pa") == "77.2\u202fpsi"
     with pytest.raises(ReportError, match="furlong"):
         Units("furlong")
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "text"),
+    [
+        (4.4e-10, 0.437, "0 to 43.7\u202fcm"),
+        (5e-5, 0.53, "0 to 53\u202fcm"),
+        (1e-5, 2e-5, "0.001 to 0.002\u202fcm"),
+        (0.05, 60.0, "5 to 6000\u202fcm"),
+    ],
+)
+def test_the_low_end_of_a_range_of_lengths_is_no_number_of_many_noughts(low: float, high: float, text: str) -> None:
+    assert Units().pair(low, high, "m") == text
+    assert Units().bare(low, high, "m") == text.removesuffix("\u202fcm")
 
 
 @pytest.mark.parametrize(

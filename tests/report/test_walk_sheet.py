@@ -9,6 +9,7 @@ from unicodedata import normalize
 import pytest
 from pypdf import PdfReader
 
+from pipeline.mitigate.search import HEAVIEST
 from pipeline.quantities import G
 from pipeline.records import Recommendation
 from pipeline.report import render
@@ -19,6 +20,7 @@ from pipeline.report.language import Language
 from pipeline.report.pages.chances import ChanceView
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.decided import Decided
+from pipeline.report.pages.plainly import brief_measure
 from pipeline.report.pages.views import PageView, State
 from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, numbers_to_set, walk_view
 from pipeline.report.render import pages_of
@@ -255,3 +257,24 @@ def test_a_sheet_that_counts_a_later_decision_says_so(tmp_path: Path) -> None:
     assert all("results of 2031-05-01" in text for text in told.values())
     assert {day for day, text in told.items() if "decisions until" in text} == {"2031-05-12"}
     assert "decisions until 2031-05-12" in told["2031-05-12"]
+
+
+def test_a_force_on_what_nobody_weighed_is_told_in_times_its_weight() -> None:
+    """Truth by hand: 9,806.65 N on 850 kg are 1.176 of its weight, rounded up to 1.2, whatever it weighs."""
+    one = advice(force=(9806.65, "N"), heaviest=(850.0, "kg"), weight=(85.0, "kg"))
+    alone = "Fasten its base: the mount must hold {force} sideways."
+    one = replace(one, measure="fasten", sentence=f"{alone} {HEAVIEST}")
+    for units in (Units("cm"), Units("in")):
+        assert numbers_to_set(one, units) == "to hold 1.2 times its weight"
+        told = brief_measure(one, units)
+        assert told == "Fasten its base: the mount must hold 1.2 times its weight sideways. Weigh it first."
+    # Where it was weighed, the force is the number.
+    weighed = replace(one, sentence=alone)
+    assert numbers_to_set(weighed, Units("cm")) == "to hold 1000\u202fkg"
+    assert brief_measure(weighed, Units("cm")) == "Fasten its base: the mount must hold 1000\u202fkg sideways."
+
+
+def test_a_gallery_that_is_a_number_is_called_one(tmp_path: Path) -> None:
+    told = words_of(drawn([WalkRow("1", "Jug", "")], name="704"), tmp_path)
+    assert "Gallery 704" in "\n".join(told)
+    assert "Gallery Gallery" not in "\n".join(words_of(drawn([WalkRow("1", "Jug", "")]), tmp_path))

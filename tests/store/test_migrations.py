@@ -1,8 +1,10 @@
 """The migrations make exactly the tables that the code uses, once, whoever starts first."""
 
 import os
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -14,7 +16,7 @@ from alembic.script import ScriptDirectory
 from sqlalchemy import URL, Engine, insert, inspect, text
 
 import pipeline
-from pipeline.collection.database import open_database
+from pipeline.collection.database import DatabaseFileError, open_database
 from pipeline.collection.inventory import latest_import, read_inventory, replace_inventory, versions
 from pipeline.collection.reading import Reading
 from pipeline.collection.record import digest_of, to_records
@@ -30,7 +32,7 @@ from tests.store.run_samples import assessment, finding, run, save_run
 
 UPGRADE = """
 import sys
-from pipeline.collection.database import open_database
+from pipeline.collection.database import DatabaseFileError, open_database
 from pipeline.store.migrate import upgrade
 upgrade(open_database(sys.argv[1]))
 print("alembic" in sys.modules)
@@ -177,3 +179,18 @@ def test_a_password_is_not_shown() -> None:
     with pytest.raises(StoreError, match="cannot be read") as refused:
         upgrade(closed)
     assert "sesame" not in str(refused.value)
+    # Nothing of the library's own: who reads it on the landing page keeps a collection.
+    assert "SQL:" not in str(refused.value)
+    assert "sqlalche.me" not in str(refused.value)
+
+
+def test_what_another_program_holds_is_told_as_that(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pipeline.collection.database.PATIENCE_S", 0.1)
+    engine = open_database(tmp_path / "kouros.sqlite")
+    upgrade(engine)
+    with closing(sqlite3.connect(tmp_path / "kouros.sqlite")) as other:
+        other.execute("PRAGMA locking_mode = EXCLUSIVE")
+        other.execute("BEGIN EXCLUSIVE")
+        with pytest.raises(DatabaseFileError, match=r"held by another program.*close what has it open") as refused:
+            current(engine)
+    assert "PRAGMA" not in str(refused.value)

@@ -9,7 +9,7 @@ from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -37,6 +37,11 @@ else:
         def exec_module(self, module: ModuleType) -> None:
             # Python has just said that the module is ours.
             module.__spec__ = module.__spec__.loader_state
+
+        def get_code(self, fullname: str) -> CodeType | None:
+            """Return what `python -m kouros` runs."""
+            true = find_spec(_THEIRS + fullname.removeprefix(_OURS))
+            return true.loader.get_code(true.name)
 
     sys.meta_path.insert(0, _Alias())
     sys.modules[__name__] = import_module(_THEIRS)

@@ -159,7 +159,8 @@ def _infer(open_: list[DimensionQuantity], others: list[DimensionQuantity], note
 def _judge(a: DimensionQuantity, b: DimensionQuantity, notes: list[DimensionNote]) -> None:
     """Two readings contradict each other: find the likely slip, believe one, and say why."""
     si, kind = b.si(), a.kind
-    shown = f"{figures(a.si(), 4)} against {figures(si, 4)} {'m' if kind == 'length' else 'kg'}"
+    sign = "m" if kind == "length" else "kg"
+    shown = f"{figures(a.si(), 4)} {sign} against {figures(si, 4)} {sign}"
     reason = ""
     glued = _unglued(a, si)
     if kind == "length" and not a.written and a.unit is not None:

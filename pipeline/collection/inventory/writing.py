@@ -96,7 +96,7 @@ def replace_inventory(
                 f"{reading.source} has {found.after} usable objects, the inventory {found.before}: "
                 f"{lost / found.before:.0%} fewer, above the limit of {shrink_limit:.0%}. Nothing was written. "
                 f"Check that the export is complete ({len(reading.rejected)} of its rows were rejected); "
-                "if the objects are really gone, import again with a higher shrink limit"
+                "if the objects are really gone, import it once by `kouros import` with a higher --shrink-limit"
             )
         described = _described(reading)
         if dry_run:

@@ -257,7 +257,7 @@ def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]
     }
 
 
-_NOT_SHOWN = "not on display"
+NOT_SHOWN = "not on display"
 """The state of an object that was left aside, in the exports."""
 
 
@@ -271,7 +271,7 @@ def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
         "gallery": item.gallery,
         "case": item.case,
         "on_display": item.on_display,
-        "state": _NOT_SHOWN if a.aside else state_of(a).value,
+        "state": NOT_SHOWN if a.aside else state_of(a).value,
         "object_class": a.scene.object_class,
         **_class_chances(a.scene),
         "furniture": a.scene.furniture,

@@ -130,7 +130,9 @@ class _Sheet:
         self._pdf = Canvas(self._stream, pagesize=size, pageCompression=1, invariant=1, lang=language.code)
         self._width = size[0] - 2.0 * _MARGIN
         self._columns = self._of_width()
-        self._name = self._fit(plain(view.gallery)) if view.gallery else _("No gallery recorded")
+        # A number alone is no name on a sheet of paper.
+        named = " ".join((_("Gallery"), view.gallery)) if view.gallery.isdigit() else plain(view.gallery)
+        self._name = self._fit(named) if view.gallery else _("No gallery recorded")
         if view.page.of > 1:
             part = _("part %(number)s of %(of)s") % {"number": view.page.number, "of": view.page.of}
             self._name = f"{self._name}, {part}"

@@ -8,6 +8,7 @@ from math import inf
 from pipeline.analysis.stakes import to_check
 from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Page, Photo, Recommendation, RunRecord, Tally, Urgency
+from pipeline.report.assumed import assumed
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, local, ngettext, said
 from pipeline.report.pages.class_curves import class_curve_views, class_curves
@@ -240,7 +241,7 @@ def museum_view(
         checks=tally.check,
         levels=_levels(head, tally),
         motions=tuple(motion_view(m, head.charts, units) for m in head.motions),
-        level_notes=tuple(clean(n) for n in head.level_notes),
+        level_notes=tuple(_note(clean(n), units) for n in head.level_notes),
         efforts=tuple(_effort(title, efforts) for title, efforts in tally.efforts.items()),
         self_test=self_test_view(head),
         decided=decided_views(tally),
@@ -306,6 +307,12 @@ def _effort(title: str, effort: Mapping[str, int]) -> EffortView:
         effort["history"],
         percent(needing / max(analyses, 1)),
     )
+
+
+def _note(text: str, units: Units) -> str:
+    """Say what a run noted of its levels and floors: a phrase as a whole, or clauses."""
+    whole = said(text)
+    return whole if whole != text else f"{assumed(text.removesuffix('.'), units)}."
 
 
 def _total(counts: Iterable[StateCounts]) -> StateCounts:

@@ -328,7 +328,7 @@ class Describer:
             grave=any(grave(f) for f in assessment.findings) if chance is None else chance.lost,
             chance=chance,
             open_for=open_for(assessment),
-            fragilities=fragility_views(assessment, drawn=state is State.ACT and fails),
+            fragilities=fragility_views(assessment, self._units, drawn=state is State.ACT and fails),
             skipped=tuple(told(left_out, one) for one in scene.skipped.items()),
             decisions=self.decided.of(assessment),
             settled=self.decided.covered(assessment),

@@ -5,6 +5,7 @@ from base64 import b64encode
 from collections.abc import Callable, Hashable, Mapping
 from functools import cache, lru_cache
 from gettext import NullTranslations
+from html import unescape
 from typing import Any
 
 from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined, nodes
@@ -152,6 +153,7 @@ def environment(language: Language | None = None) -> Environment:
     env.filters["squeezed"] = _squeezed
     env.filters["thousands"] = count
     env.filters["moment"] = moment
+    env.filters["css"] = _css
     return env
 
 
@@ -164,6 +166,12 @@ def fragments(env: Environment, template: str) -> Callable[..., Markup]:
         return Markup(getattr(macros, macro)(*given))  # noqa: S704 - the macro has escaped what it was given
 
     return fragment
+
+
+def _css(text: str) -> Markup:
+    """Return a text as a string of a style sheet, which knows no entities."""
+    told = "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in unescape(text))
+    return Markup(f'"{told}"')  # noqa: S704 - only letters, digits and escapes
 
 
 def _squeezed(text: Markup) -> Markup:

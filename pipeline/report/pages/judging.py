@@ -90,13 +90,13 @@ class ShakingView:
     note: str
 
 
-def fragility_views(assessment: Assessment, *, drawn: bool) -> tuple[FragilityView, ...]:
+def fragility_views(assessment: Assessment, units: Units, *, drawn: bool) -> tuple[FragilityView, ...]:
     """Return the curves of an object, what fails first to begin with; only that one is drawn."""
     number = clean(assessment.scene.item.object_number)
     # States are told beside the curve of harm as a whole.
     told = [f for f in assessment.fragilities if f.state in ("", HARM)]
     # Of what is only bounded there is no curve.
-    views = [_view(f, number if drawn and i == 0 and not f.bound else "") for i, f in enumerate(told)]
+    views = [_view(f, number if drawn and i == 0 and not f.bound else "", units) for i, f in enumerate(told)]
     states = _state_chances(assessment.fragilities)
     return tuple(replace(view, numbers=f"{view.numbers} {states}".strip()) for view in views)
 
@@ -114,7 +114,7 @@ def _state_chances(curves: Sequence[Fragility]) -> str:
     return f"{within} {', '.join(known)}." if known else ""
 
 
-def _view(f: Fragility, draw: str) -> FragilityView:
+def _view(f: Fragility, draw: str, units: Units) -> FragilityView:
     at = in_g(f.median)
     if f.bound:
         sentence = _bounds(sampled=bool(f.state))[f.bound] % {"at": at}
@@ -133,7 +133,7 @@ def _view(f: Fragility, draw: str) -> FragilityView:
         _sources(f),
         "" if f.state else _rate(f),
         _chance(f) if f.state else "",
-        _goodness(f) if f.state else "",
+        _goodness(f, units) if f.state else "",
         clean(beside),
         _picture(f, draw) if draw else Markup(""),
     )
@@ -154,7 +154,7 @@ def _sources(f: Fragility) -> str:
     }
 
 
-def _goodness(f: Fragility) -> str:
+def _goodness(f: Fragility, units: Units) -> str:
     """Say how well the curve fits its samples, and what it is by peak velocity."""
     told = _("The curve of harm is by %(samples)s samples at %(stripes)s intensities.")
     said_so = told % {"samples": count(f.samples), "stripes": count(len(f.stripes))}
@@ -167,12 +167,16 @@ def _goodness(f: Fragility) -> str:
         said_so += " " + told % {"deviance": local(f"{f.deviance:.1f}"), "degrees": count(f.degrees), "share": share}
     if f.median_pgv is not None:
         told = (
-            _("By peak velocity, in which the motions differ less: %(at)s\u00a0cm/s.")
+            _("By peak velocity, in which the motions differ less: %(at)s.")
             if f.measure == "pgv"
-            else _("By peak velocity: %(at)s\u00a0cm/s.")
+            else _("By peak velocity: %(at)s.")
         )
-        said_so += " " + told % {"at": significant(100.0 * f.median_pgv, 2)}
+        said_so += " " + told % {"at": _speed(f.median_pgv, units)}
     return said_so
+
+
+def _speed(value: float, units: Units) -> str:
+    return f"{significant(value * units.factor('m/s'), 2)}\u202f{units.symbol('m/s')}"
 
 
 def _bounds(*, sampled: bool) -> Mapping[str, str]:

@@ -4,19 +4,21 @@ The full sentence of a measure, with the moment, the margin and the friction, st
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from math import ceil, floor, log10
 
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED
 from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, SIZED, UPPER_FIRST
+from pipeline.quantities import G
 from pipeline.records import Finding, Recommendation
 from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
 from pipeline.report.pages.ranking import finding_state
 from pipeline.report.pages.views import Judged
 from pipeline.report.text import clean
-from pipeline.report.units import Units
+from pipeline.report.units import Units, significant
 
 AMPLE = 20.0
 """Times what is needed [-] above which nobody asks how many: a few grams are held hundreds of times over."""
@@ -71,23 +73,46 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
 def brief_measure(advice: Recommendation, units: Units) -> str:
     """Return what is advised as a list of many objects says it: what to do, and what to find out before.
 
+    Where nobody knows what an object weighs, a force is told in times its weight: it holds for whatever the scales say,
+    and the force on a solid block of its size, a tonne for an andiron, is no number to work by.
+
     Parameters
     ----------
     advice, units
         As of `plain_measure`.
     """
-    told, _numbers = _advised(advice, units)
+    told, _numbers = _advised(advice, units, of_weight=times_weight(advice))
     if NAMED_FIRST in advice.sentence:
         told.append(_("Before that, say which of the kinds named in its entry it is."))
-    elif any(one in advice.sentence for one in (HEAVIEST, AT_BEST, SIZED)):
+    elif weighed_first(advice):
         told.append(_("Weigh it first."))
     return " ".join(told)
 
 
-def _advised(advice: Recommendation, units: Units) -> tuple[list[str], dict[str, str]]:
-    """Return the sentences of what is done, and the numbers of the measure as people write them."""
+def times_weight(advice: Recommendation) -> str:
+    """Return a force that is for the most that an object may weigh, in times its weight; "" for any other."""
+    heaviest, force = (advice.parameters.get(name, 0.0) for name in ("heaviest", "force"))
+    if HEAVIEST not in advice.sentence or heaviest <= 0.0 or force <= 0.0:
+        return ""
+    times = force / (heaviest * G)
+    step = 10.0 ** (floor(log10(times)) - 1)
+    return _("%(number)s times its weight") % {"number": significant(ceil(times / step - 1e-6) * step, 2)}
+
+
+def weighed_first(advice: Recommendation) -> bool:
+    """Whether an object is to be weighed before its measure is built."""
+    return any(one in advice.sentence for one in (HEAVIEST, AT_BEST, SIZED))
+
+
+def _advised(advice: Recommendation, units: Units, of_weight: str = "") -> tuple[list[str], dict[str, str]]:
+    """Return the sentences of what is done, and the numbers of the measure as people write them.
+
+    of_weight : what stands for the force, "" for the weight that it is
+    """
     write = by_hand(units)
     numbers = {name: write(name, value, advice.units.get(name, "")) for name, value in advice.parameters.items()}
+    if of_weight:
+        numbers["force"] = of_weight
     told = [_("First have what it stands in fastened.")] if ANCHORED in advice.sentence else []
     if HELD_FIRST in advice.sentence:
         told.append(_("First record what holds it now as installed."))

@@ -1,6 +1,6 @@
 """Words about an inspected record, on its page and on the terminal."""
 
-from pipeline.motions.doubts import doubts
+from pipeline.motions.doubts import doubts, scale_of
 from pipeline.motions.inspection import Inspection
 from pipeline.motions.pulses import WaveletPulse
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL
@@ -109,8 +109,10 @@ def summary_lines(one: Inspection, units: Units) -> list[str]:
         f"{clean(one.motion.name)}, level {clean(one.level)}, {one.place} of {clean(one.site)}",
         f"  source    {source}; licence {licence}",
         f"  sampling  {sampling(one)}",
-        f"  done      {processing(one)}" + (" Below: as recorded -> as used." if one.filtered else ""),
+        f"  done      {processing(one)}" + (" Below: before -> after." if one.filtered else ""),
     ]
+    scale = scale_of(one.motion.steps)
+    lines += [f"  scaled    by {scale:.4g}, before and after below too"] if scale != 1.0 else []
     reason = corner_reason(one)
     lines += [f"  corner    {reason}"] if reason else []
     for stem, title, unit in PEAKS:

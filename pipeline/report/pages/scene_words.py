@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from pipeline.records import Anchorage, Furniture, Mount, Origin, Scene, Support
+from pipeline.report.assumed import reason_words
 from pipeline.report.language import _, said
 from pipeline.report.text import clean, count, words
 
@@ -75,10 +76,23 @@ def furniture_known(counts: Mapping[str, int]) -> str:
     return ", ".join(text % {"count": count(counts[of])} for of, text in told.items() if counts.get(of))
 
 
+NOT_REQUIRED, NO_CLASS = "not required: ", "its record names no class"
+"""How it is told that no model is asked, and that nothing names a class."""
+
+
 def left_out(skipped: tuple[str, str]) -> str:
     """Say which model was left out, and why."""
     model, why = skipped
-    return f"{words(clean(model))}: {said(clean(why))}"
+    asked, sign, rule = clean(why).partition(NOT_REQUIRED)
+    if asked or not sign:
+        return f"{words(clean(model))}: {said(clean(why))}"
+    # Behind the rule stands what a model says to all of which it is not asked.
+    first, parted, last = rule.rpartition("; ")
+    if not parted or last.startswith(NO_CLASS):
+        first, last = rule, ""
+    not_required = _("not required")
+    told = f"{words(clean(model))}: {not_required}: {reason_words(first)}"
+    return f"{told}; {said(last)}" if last else told
 
 
 def taken_words(scene: Scene) -> str:

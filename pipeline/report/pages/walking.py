@@ -12,6 +12,7 @@ from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, parted, said
 from pipeline.report.pages.chances import name_of
 from pipeline.report.pages.decided import Decided
+from pipeline.report.pages.plainly import times_weight, weighed_first
 from pipeline.report.pages.views import ObjectView, PageView, State, SurveyView, TaskView
 from pipeline.report.text import clean, short, words
 from pipeline.report.units import Units
@@ -155,6 +156,8 @@ def _act(view: ObjectView, advice: Recommendation | None, units: Units) -> WalkR
         what, numbers = said(clean(advice.title)), numbers_to_set(advice, units)
         if NAMED_FIRST in advice.sentence:
             asked = [_("What it is"), *asked]
+        elif weighed_first(advice):
+            asked = [_("Weight"), *asked]
     else:
         unnamed = chance is not None and chance.unnamed
         what, numbers = _("Say first what it is") if unnamed else _("No measure found: ask an engineer"), ""
@@ -197,7 +200,7 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
         The reader's.
     """
     named = dict.fromkeys(name for _text, name, _form, _how in Formatter().parse(advice.sentence) if name)
-    told, write, pieces = list[str](), by_hand(units), ""
+    told, write, pieces, of_weight = list[str](), by_hand(units), "", times_weight(advice)
     for name in named:
         # The page has the moment too; whoever buys a clamp asks what it must hold.
         beside = name == "moment" and "force" in advice.parameters
@@ -208,12 +211,14 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
                 told[-1] = f"{pieces} × Ø {text}"
                 continue
             pieces = text if name == "pieces" else pieces
-            if name == "weight" and "heaviest" in advice.parameters:
-                told[-1] += ", " + _("%(number)s is likelier") % {"number": text}
+            if name in ("weight", "heaviest") and of_weight:
+                continue
+            if name == "force" and of_weight:
+                told.append(_("to hold %(number)s") % {"number": of_weight})
                 continue
             plainly = {"times": _("%(number)s times its weight"), "pieces": _("%(number)s pieces")}
             plainly |= {"force": _("hold %(number)s in all") if pieces else _("to hold %(number)s")}
-            plainly |= {"clearance": _("%(number)s free all round"), "heaviest": _("for up to %(number)s")}
+            plainly |= {"clearance": _("%(number)s free all round")}
             plainly |= {"friction": _("friction %(number)s or more")} if advice.measure in _ROUGHER else {}
             told.append(plainly[name] % {"number": text} if name in plainly else f"{words(clean(name))} {text}")
     return parted(told)
