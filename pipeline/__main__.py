@@ -1,8 +1,6 @@
 """`python -m kouros`: the command, where its folder is not on the path."""
 
-import sys
-
 from pipeline.cli import main
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()
