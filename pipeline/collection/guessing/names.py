@@ -278,9 +278,11 @@ def named(name: str) -> ColumnMeaning | None:
         return None
     forms = [*_forms(name)]
     forms += [form.removeprefix(_DISPLAYED) for form in forms if form.startswith(_DISPLAYED)]
+    above = set(map(plain, path_of(name)[:-1]))
     for form in forms:
         found = _names().get(form)
-        if found is not None:
+        # What stands below a description is none: "Description.Material.Keyword".
+        if found is not None and not (found.field == DESCRIPTION and form in above):
             return found
     for form in forms:
         found = _singular_names().get(_singular(form))
