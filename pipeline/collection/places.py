@@ -15,7 +15,7 @@ _NUMBERED = ("case", "cases", "Schrank", "kast")
 """Words that name furniture only where a number follows."""
 
 
-class Place(NamedTuple):
+class NamedPlace(NamedTuple):
     """What a place names: a room, a case, plinth or shelf in it, how a thing is held there; "" for what it does not."""
 
     room: str
@@ -23,7 +23,7 @@ class Place(NamedTuple):
     displayed: str = ""
 
 
-def parted(text: str) -> Place:
+def parted(text: str) -> NamedPlace:
     """Return what a place names.
 
     Parameters
@@ -39,18 +39,18 @@ def parted(text: str) -> Place:
     if any(cases):
         first = cases.index(True)
         if first:
-            return Place(text[: spans[first - 1][1]], text[spans[first][0] :])
+            return NamedPlace(text[: spans[first - 1][1]], text[spans[first][0] :])
         if not all(cases):
             # "Case 3, Gallery 1": the other way round.
             room = cases.index(False)
-            return Place(text[spans[room][0] :], text[: spans[room - 1][1]])
-        return Place(text, text if len(spans) > 1 or numbered.match(text) else "")
+            return NamedPlace(text[spans[room][0] :], text[: spans[room - 1][1]])
+        return NamedPlace(text, text if len(spans) > 1 or numbered.match(text) else "")
     held = next((at for at, (start, end) in enumerate(spans) if at and _tells(text[start:end])), 0)
     if held:
-        return Place(text[: spans[held - 1][1]], displayed=text[spans[held][0] :])
+        return NamedPlace(text[: spans[held - 1][1]], displayed=text[spans[held][0] :])
     found = inside.search(text)
     room_alone = text[: found.start()].rstrip() if found else ""
-    return Place(room_alone, text[len(room_alone) :].strip()) if room_alone else Place(text)
+    return NamedPlace(room_alone, text[len(room_alone) :].strip()) if room_alone else NamedPlace(text)
 
 
 def _tells(piece: str) -> bool:

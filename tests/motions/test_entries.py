@@ -119,7 +119,7 @@ def test_a_record_without_a_vertical_shakes_horizontally_and_says_so(
     assert not motion.acceleration[2].any()
     whole = two(tmp_path / "three", HORIZONTAL.replace('vertical = "absent"\n', ""))
     assert NO_VERTICAL in motion.steps
-    assert "no vertical shaking was recorded, and none is assumed: two" in _level_note(site.levels[0], Units())
+    assert "no vertical shaking was recorded, and none is assumed: two" in _level_note(site.levels[0])
     assert "No vertical component was recorded" in processing(inspect(folder)[0])
     (summary,) = summaries(site.levels)
     table = dict(motion_view(summary, {}, Units()).table)

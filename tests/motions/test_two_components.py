@@ -9,7 +9,6 @@ from pipeline.motions.record import ESTIMATED, NO_VERTICAL
 from pipeline.motions.vertical import ratio, with_vertical
 from pipeline.night.prepare import _level_note
 from pipeline.records import Motion
-from pipeline.report import Units
 from pipeline.report.pages.record_words import processing
 
 from .conftest import DT, tone
@@ -77,7 +76,7 @@ def test_an_estimated_vertical_is_told_wherever_it_is_used(three, write_manifest
     assert any("EN 1998-1:2004" in step and "judgement" in step and "n.mseed" in step for step in motion.steps)
     assert "the motion's is an estimate from the horizontals" in processing(inspect(folder)[0])
     (level,) = read_site(folder).levels
-    assert "an estimate is assumed: hand-made" in _level_note(level, Units())
+    assert "an estimate is assumed: hand-made" in _level_note(level)
 
 
 def test_a_scale_counts_for_the_estimate_as_well(three, write_manifest):

@@ -84,14 +84,16 @@ def test_charts_are_painted_where_they_are_used(browser: Chrome, report: Path) -
     assert all(width > 200 and height > 120 for width, height in boxes)
 
 
-def test_it_prints_on_a4_with_its_details(browser: Chrome, report: Path) -> None:
+def test_it_prints_on_the_printers_paper_with_its_details(browser: Chrome, report: Path) -> None:
     browser.get(next(report.glob("gallery-101*.html")).as_uri())
     browser.find_element("id", "with-entries").click()  # They are printed on demand only.
-    answer = browser.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": False})
-    pdf = base64.b64decode(answer["data"])
-    assert pdf.startswith(b"%PDF-")
-    boxes = {tuple(round(float(v)) for v in box.split()) for box in re.findall(rb"/MediaBox \[([\d. ]+)\]", pdf)}
-    assert boxes == {(0, 0, 595, 842)}  # 210 by 297 mm in points of 1/72 inch
+    for wide, high in ((210.0 / 25.4, 297.0 / 25.4), (8.5, 11.0)):
+        paper = {"paperWidth": wide, "paperHeight": high, "preferCSSPageSize": True, "printBackground": False}
+        pdf = base64.b64decode(browser.execute_cdp_cmd("Page.printToPDF", paper)["data"])
+        assert pdf.startswith(b"%PDF-")
+        boxes = [[float(v) for v in box.split()] for box in re.findall(rb"/MediaBox \[([\d. ]+)\]", pdf)]
+        # In points of 1/72 inch, of which Chromium makes whole pixels of 1/96.
+        assert boxes == [pytest.approx([0.0, 0.0, 72.0 * wide, 72.0 * high], abs=0.75)] * len(boxes) != []
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
     try:
         shown, split = browser.execute_script(

@@ -39,7 +39,7 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u20
 PAGE = re.compile(r"(index|motion|method|objects|news|reading-[0-9]+)\.html|[a-z0-9-]{1,60}-[0-9a-f]{8}\.html")
 SHEET = re.compile(r"[a-z0-9-]{1,60}-[0-9a-f]{8}(-[0-9]+)?-sheet\.pdf")
 PART = re.compile(
-    r"parts|parts/[a-z0-9-]{1,60}-[0-9a-f]{8}\.((findings|recommendations|objects)\.(csv|jsonl|parquet)|(keys|listed)\.arrow)"
+    r"parts|parts/[a-z0-9-]{1,60}-[0-9a-f]{8}\.((findings|recommendations|objects)\.(csv|jsonl|arrow)|(keys|listed)\.arrow)"
 )
 EXPORTS = {
     *("findings.csv", "findings.jsonl", "findings.parquet", "findings.xlsx", "objects.csv", "objects.parquet"),
