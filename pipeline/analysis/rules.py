@@ -118,7 +118,7 @@ _FIGURES = ("statue", "standing_figure", "figurine")
 """Classes of what a picture may show by the same name: a picture of Kannon is a figure of Kannon too."""
 _BESIDE = re.compile(
     r"\s*(?:with|in|by|on|showing|depicting|mit|aus|auf|avec|sur|con|per|su|para|sobre|com|em|met|op|cu|din|pe"
-    r"|z|ze|na|s|se|av|af|med|fran|fra|из|на|с|με|απο|σε)\s*"
+    r"|im|z|ze|na|s|se|av|af|med|fran|fra|из|на|с|με|απο|σε)\s*"
 )
 """Words behind which stands what a thing has, shows, stands on or is made of, and not what it is."""
 _STUFF = re.compile(

@@ -41,8 +41,8 @@ def named_by(
     """Return a column that names the things of a source in which none is called so.
 
     That is a column called "name" beside a description; the title, where no artist, material or class is told and most
-    of what is measured has more sides than a picture, or one alone: a list of things gives their names for titles.  Where
-    nothing is measured, most titles must be short names of things.
+    of what is measured has more sides than a picture, or one alone: a list of things gives their names for titles.
+    Where nothing is measured, most titles must be short names of things.
     Where there is no title either, it is a description, the first sentence of which says what a thing is.
 
     Parameters
