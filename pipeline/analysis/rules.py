@@ -66,6 +66,30 @@ _ENDINGS = (
     *(("illa", "a"), ("illo", "o"), ("ita", "a"), ("ito", "o"), ("inha", "a"), ("inho", "o"), ("ette", "e")),
     *(("chen", ""), ("chen", "e"), ("lein", ""), ("lein", "e"), ("etje", ""), ("tje", ""), ("pje", ""), ("je", "")),
     *(("orna", "a"), ("or", "a"), ("ar", ""), ("er", ""), ("ek", ""), ("ki", "ka"), ("y", "a"), ("y", "")),
+    *(("lari", ""), ("leri", ""), ("lar", ""), ("ler", "")),
+    *(
+        ("ки", "ка"),
+        ("ы", "а"),
+        ("ы", ""),
+        ("и", "а"),
+        ("и", "я"),
+        ("и", "ь"),
+        ("и", ""),
+        ("ик", ""),
+        ("а", ""),
+        ("ов", ""),
+    ),
+    *(
+        ("εσ", "α"),
+        ("εσ", "η"),
+        ("οι", "οσ"),
+        ("α", "ο"),
+        ("ια", "ι"),
+        ("ακι", "ι"),
+        ("ακι", "α"),
+        ("ου", "οσ"),
+        ("ασ", "α"),
+    ),
 )
 """Endings of plurals and of what is small, folded, and what stands in their place in the word that a table knows."""
 _RELATED = 4
@@ -94,7 +118,7 @@ _FIGURES = ("statue", "standing_figure", "figurine")
 """Classes of what a picture may show by the same name: a picture of Kannon is a figure of Kannon too."""
 _BESIDE = re.compile(
     r"\s*(?:with|in|by|on|showing|depicting|mit|aus|auf|avec|sur|con|per|su|para|sobre|com|em|met|op|cu|din|pe"
-    r"|z|ze|na|s|se|av|af|med|fran|fra|из|на|с|με|απο|σε)\s*"
+    r"|im|z|ze|na|s|se|av|af|med|fran|fra|из|на|с|με|απο|σε)\s*"
 )
 """Words behind which stands what a thing has, shows, stands on or is made of, and not what it is."""
 _STUFF = re.compile(
@@ -136,6 +160,8 @@ _SCULPTURES = frozenset(
     }
 )
 """Object names, folded, of which a title may name a kind: a sculpture that is called mask, bust or relief."""
+_OF_TECHNIQUE = re.compile(r"\b(?:carvings?|schnitzereien?|houtsnijwerk|talla|sculpte)\b")
+"""What a museum may class things by that says only how they are made: bowls and baskets among its carvings."""
 _CARVED = ("bust", "relief")
 """Classes of such kinds; a boot or a crown of marble stands as other sculpture does."""
 _MASK = re.compile(r"\*?(?:mas[kqc]|面|仮面)")
@@ -223,6 +249,8 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     # What is painted, drawn or printed is flat, whatever its title says that it shows, but for its own format.
     flat = made is not None and made.rule.object_class in PICTURES
     speaks = title if not flat or (title is not None and title.rule.name in FORMATS) else None
+    if name is not None and name.rule.object_class in _THINGS and _OF_TECHNIQUE.search(fold(item.classification)):
+        classed = None
     found = [one for one in (name or speaks, classed, made) if one is not None]
     decided = min(found, key=lambda one: one.rule.position, default=RuleMatch(of.rules[-1]))
     return Readings(decided, decided.rule.name in of.own, name, classed, made, title)

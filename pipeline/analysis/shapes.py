@@ -24,6 +24,8 @@ BEAD = 0.06
 """Largest dimension [m] below which a head is a small find."""
 DEEP = 0.7
 """Height over the larger plan dimension from which a bowl is a vessel."""
+UPRIGHT, SHALLOW = 1.0, 0.75
+"""Height [m] from which a piano may be an upright one, and depth over that height up to which it is."""
 SMALL = 0.4
 """Height [m] below which a sculpture, no larger otherwise, is handled as a figurine."""
 LARGE = 0.6
@@ -84,6 +86,11 @@ def _low(item: Item) -> bool:
     return item.height_m is not None and item.height_m < LOW * _plan(item)
 
 
+def _upright(item: Item) -> bool:
+    plan = [side for side in (item.width_m, item.depth_m) if side is not None]
+    return item.height_m is not None and item.height_m >= UPRIGHT and min(plan, default=9.0) <= SHALLOW * item.height_m
+
+
 SHAPES: Mapping[str, Callable[[Item], bool]] = {
     "flat": _flat,
     "panel": _panel,
@@ -100,6 +107,7 @@ SHAPES: Mapping[str, Callable[[Item], bool]] = {
     "not-tiny": lambda item: max(_sizes(item), default=0.0) >= TINY,
     "bead": lambda item: max(_sizes(item), default=BEAD) < BEAD,
     "broad": _broad,
+    "upright": _upright,
     "unsized": lambda item: not _sizes(item),
 }
 """The measures that a row may ask for.  A record without the dimensions is no small, tall, large or tiny thing, but

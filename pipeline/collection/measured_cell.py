@@ -1,6 +1,11 @@
 """One cell that holds a number with its unit."""
 
+import re
+
 from pipeline.collection.dimensions import DimensionPart, Dimensions, parse
+
+_SLIPPED = re.compile(r"(\s*\d+,)\s(\d\s*[^\W\d_]+\.?\s*)")
+"""A number in whose decimal comma a blank has slipped, all that there is in the cell: 38, 6 cm."""
 
 
 def written(part: DimensionPart, read: Dimensions) -> str:
@@ -40,7 +45,8 @@ def of_cell(text: str, kind: str, decimal: str) -> tuple[float, str] | None:
     (float, str) or None
         In SI, and as written; None where it does not hold one number with its unit.
     """
-    read = parse(text, decimal=decimal)
+    slipped = _SLIPPED.fullmatch(text)
+    read = parse(text if slipped is None else "".join(slipped.groups()), decimal=decimal)
     parts = [part for part in read.parts if part.value is not None]
     if len(parts) != 1 or (parts[0].dimension == "weight") != (kind == "kg") or read.having("remainder"):
         return None

@@ -187,7 +187,7 @@ def test_a_house_with_its_papers_and_a_length_beside_the_depth(tmp_path: Path) -
         "499": "framed",
         "498": "framed",
         "494": "small_flat",
-        "489": "object",
+        "489": "mounted",
         "488": "statue",
         "484": "small_flat",
         "479": "small_flat",

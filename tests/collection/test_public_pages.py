@@ -23,8 +23,8 @@ FOLDER = Path(__file__).parents[1] / "data" / "collections"
 PLAIN = re.compile(r"(its )?[\w ]+(, which lies in plan)?, of the object itself;")
 """How a note of a number begins that nothing more is said of."""
 NEAR = 0.006
-UNFOUND = ("rmg_images",)
-"""Of a file of one row, whose sizes are taken for its numbers."""
+UNFOUND = ("rmg_images", "gugong")
+"""Of files of one and of two rows, whose sizes are taken for their numbers."""
 REACHED = {"learn": (38, 53, 53), "held": (61, 70, 71)}
 """Heights, classes and manners of support right of 53 and 76 rows, as reached; less is a loss."""
 
@@ -113,9 +113,15 @@ def test_things_of_forty_more_sites(part: str) -> None:
     assert all(item.on_display == (mark["display"] == "1") for mark, item in rows if mark["display"] in "01")
 
 
-SIXTY = {"learn": (76, 36, 76, 80, 0), "held": (71, 39, 71, 77, 4)}
-"""Heights (of 80 and 78), plans (of 41 and 44), classes and manners of support (of 81 each) right; heights unsaid."""
-UNSAID = ("islenzkur", "raiz")
+TABLES = {
+    ("sixty_sites", "learn"): (76, 36, 76, 80, 0, 0),
+    ("sixty_sites", "held"): (71, 39, 71, 77, 4, 0),
+    ("more_museums", "learn"): (84, 27, 88, 90, 0, 2),
+    ("more_museums", "held"): (85, 11, 89, 91, 3, 1),
+}
+"""Heights (of 80, 78, 86 and 91), plans (of 41, 44, 31 and 14), classes and manners of support (of 81, 81, 95 and 94)
+right; heights unsaid and wrong classes that are said to be 90 % sure at the most."""
+UNSAID = ("islenzkur", "raiz", "gugong", "sdtb", "victoria")
 """Sizes in a description that no column of sizes stands beside; metres in a column of centimetres."""
 
 
@@ -131,18 +137,20 @@ def is_plan(mark: dict[str, str], item: Item) -> bool:
     return False
 
 
-@pytest.mark.parametrize("part", SIXTY)
-def test_things_of_ninety_more_tables(part: str) -> None:
-    """What is said to be 90 % sure is right, and whatever is not as marked is said but for two tables."""
-    rows = rows_of(part, "sixty_sites")
-    heights, plans, classes, manners, open_ = SIXTY[part]
+@pytest.mark.parametrize(("pages", "part"), TABLES)
+def test_things_of_150_more_tables(pages: str, part: str) -> None:
+    """What is said to be 90 % sure is right but for three things, and what is not as marked is said but for five."""
+    rows = rows_of(part, pages)
+    heights, plans, classes, manners, open_, mistaken = TABLES[pages, part]
     right, unsaid = 0, []
     for mark, item in rows:
         if mark["height_cm"] == "*":
             continue
         able = [float(one) / 100 for one in re.split(r"[|?]", mark["height_cm"].strip("-")) if one]
         near = any(item.height_m == pytest.approx(one, rel=NEAR, abs=ROUNDED) for one in able)
-        none = item.height_m is None and (("?" in mark["height_cm"] and is_said(item)) or mark["height_cm"] == "-")
+        none = item.height_m is None and (
+            ("?" in mark["height_cm"] and is_said(item)) or mark["height_cm"].endswith("-")
+        )
         right += near or none
         if not (near or none or is_said(item)):
             unsaid.append(mark["file"])
@@ -150,10 +158,13 @@ def test_things_of_ninety_more_tables(part: str) -> None:
     assert sum(is_plan(mark, item) for mark, item in rows if mark["plan_cm"] not in ("", "*")) >= plans
     assert len(unsaid) <= open_
     assert set(unsaid) <= set(UNSAID)
-    taken = [(mark["classes"].split("|"), classify(item)) for mark, item in rows]
+    taken = [
+        ([*MANNER] if mark["classes"] == "*" else mark["classes"].split("|"), classify(item)) for mark, item in rows
+    ]
     assert sum(scene.object_class in able for able, scene in taken) >= classes
     assert sum(MANNER[scene.object_class] in {MANNER[one] for one in able} for able, scene in taken) >= manners
-    assert all(scene.object_class in able for able, scene in taken if scene.chances and scene.chances[0][1] >= 0.9)
+    sure = [scene.object_class in able for able, scene in taken if scene.chances and scene.chances[0][1] >= 0.9]
+    assert sure.count(False) <= mistaken
     assert all(item.on_display == (mark["display"] == "1") for mark, item in rows if mark["display"] in "01")
 
 
@@ -219,6 +230,10 @@ def test_names_that_were_mistaken(fields: dict[str, str], taken: str) -> None:
             "bust",
         ),
         ({"title": "Πήλινο ειδώλιο", "height_m": 0.12, "width_m": 0.05, "depth_m": 0.04}, "figurine"),
+        # A piano that is as high as a chest and not deep stands as one.
+        ({"object_name": "Piano", "height_m": 1.3, "width_m": 1.45, "depth_m": 0.65}, "cabinet"),
+        ({"object_name": "bowl", "classification": "carvings", "height_m": 0.1, "width_m": 0.3}, "dish"),
+        ({"object_name": "Messhelm im Spacelab"}, "mounted"),
         ({"object_name": "Dragkista, Kommóða", "height_m": 0.96, "width_m": 1.09, "depth_m": 0.49}, "cabinet"),
     ],
 )

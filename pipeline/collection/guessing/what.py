@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
+from functools import cache
+from unicodedata import combining, normalize
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.names import ARTIST, DESCRIPTION, TEXTS, plain
+from pipeline.tables import table
 
 SAYING = ("object_name", "classification", "medium", "material")
 """Fields beside which a title may be anything."""
@@ -24,6 +28,12 @@ _SOME = 200
 _FACE = 2
 """Sides that are measured of a picture."""
 
+_HEAD = re.compile(r"[,;:(\u2013]|\s-\s")
+"""What ends the part of a title in which its thing is named."""
+
+_SHORT, _FEWEST, _MOST = 4, 2, 0.5
+"""Words of such a part at the most, and how many titles and what share of them must name things (judgement)."""
+
 
 def named_by(
     able: Mapping[str, Sequence[Column]], found: Mapping[str, Column], chosen: Mapping[str, str]
@@ -32,6 +42,7 @@ def named_by(
 
     That is a column called "name" beside a description; the title, where no artist, material or class is told and most
     of what is measured has more sides than a picture, or one alone: a list of things gives their names for titles.
+    Where nothing is measured, most titles must be short names of things.
     Where there is no title either, it is a description, the first sentence of which says what a thing is.
 
     Parameters
@@ -59,10 +70,10 @@ def named_by(
         return title
     if filled.intersection(SAYING):
         return None
-    return title if _bodily(able.get(TEXTS) or able.get(DESCRIPTION, ()), filled) else None
+    return title if _bodily(able.get(TEXTS) or able.get(DESCRIPTION, ()), filled, title) else None
 
 
-def _bodily(texts: Sequence[Column], filled: set[str]) -> bool:
+def _bodily(texts: Sequence[Column], filled: set[str], title: Column) -> bool:
     """Whether most of what is measured are bodies: by three sides, a diameter, a weight, or by their height alone."""
     if filled.intersection(("depth_m", "diameter_m", "mass_kg")):
         return True
@@ -70,7 +81,38 @@ def _bodily(texts: Sequence[Column], filled: set[str]) -> bool:
     sides = [{part.dimension for part in parse(plain_text(text)).parts if part.unit} for text in some]
     measured = [one for one in sides if one]
     flat = sum(len(one) == _FACE and one <= {"height", "width", "length", "unlabelled"} for one in measured)
+    if not measured and not filled.intersection(("height_m", "width_m", "length_m")):
+        return _names_things(title.filled[:_SOME])
     return bool(measured) and flat < 0.5 * len(measured)
+
+
+def _names_things(titles: Sequence[str]) -> bool:
+    """Whether most titles are short names of things that are no pictures: their first or their last word is one."""
+    words, endings = _things()
+    named = 0
+    for title in titles:
+        head = re.findall(r"[^\W\d_]+", _folded(_HEAD.split(title.strip(), maxsplit=1)[0]))
+        if 0 < len(head) <= _SHORT:
+            named += not words.isdisjoint((head[0], head[-1], " ".join(head))) or head[-1].endswith(endings)
+    return named >= _FEWEST and named >= _MOST * len(titles)
+
+
+@cache
+def _things() -> tuple[frozenset[str], tuple[str, ...]]:
+    """Return the names of things that hang flat neither on nor as a wall, and the endings of such names."""
+    entries = {
+        _folded(entry)
+        for row in table("rules")
+        if row["class"] not in ("framed", "wall_painting", "installation")
+        for entry in row["words"].split("|")
+        if entry
+    }
+    endings = tuple(entry[1:] for entry in entries if entry[0] == "*")
+    return frozenset(entry for entry in entries if entry[0] != "*"), endings
+
+
+def _folded(text: str) -> str:
+    return "".join(one for one in normalize("NFKD", text) if not combining(one)).casefold()
 
 
 def describing(able: Mapping[str, Sequence[Column]], title: Column) -> Column | None:

@@ -219,4 +219,7 @@ def unit_of(text: str) -> str | None:
     known = UNITS.get(whole) or UNITS.get(whole.rstrip("s")) or UNITS.get(whole.removesuffix("i") + "o")
     if known is None and (unit := unit_words().get(whole.translate(ALIKE))) is not None and unit.name in UNITS:
         return unit.name
+    length, slash, _ = whole.partition("/")
+    if known is None and slash and length:
+        return unit_of(length)  # "Inches/ounces": of lengths and of weights, in this order
     return known
