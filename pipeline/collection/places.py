@@ -1,7 +1,7 @@
 """A place that names a room and what a thing stands in there, "Gallery 1, case 3", and where the one ends."""
 
 import re
-from functools import cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 from pipeline.records import Furniture
@@ -23,6 +23,8 @@ class NamedPlace(NamedTuple):
     displayed: str = ""
 
 
+# A museum has far fewer places than things.
+@lru_cache(maxsize=4096)
 def parted(text: str) -> NamedPlace:
     """Return what a place names.
 

@@ -33,9 +33,6 @@ from pipeline.store.pages import Places, load_places
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import load_head
 
-ASIDE = "aside"
-"""The state, as pages call it, of what is not on display and was not assessed."""
-
 SHOWN = 50
 """Objects on a page of what a search finds."""
 
@@ -240,7 +237,7 @@ def _listed(folder: Path) -> Iterator[ListedObject]:
         for batch in table.iter_batches(columns=list(_COLUMNS)):
             columns: list[list[Any]] = [batch.column(name).to_pylist() for name in _COLUMNS]
             at = _COLUMNS.index("state")
-            columns[at] = [ASIDE if state == NOT_SHOWN else state for state in columns[at]]
+            columns[at] = [State.ASIDE.value if state == NOT_SHOWN else state for state in columns[at]]
             # What has no place among all comes last.
             columns[-1] = [1 << 60 if rank is None else rank for rank in columns[-1]]
             yield from (ListedObject(*row) for row in zip(*columns, strict=True))

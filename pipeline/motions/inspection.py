@@ -15,7 +15,7 @@ from pipeline.motions.processing import Processed
 from pipeline.motions.pulses import HalfCycle, WaveletPulse, shahi_baker_pulse, velocity_half_cycles
 from pipeline.motions.record import Record
 from pipeline.motions.site import measured, prepare
-from pipeline.motions.spectra import Spectrum, response_spectra, standard_periods
+from pipeline.motions.spectra import COMPONENTS, Spectrum, response_spectra, standard_periods
 from pipeline.records import Motion
 
 SPECTRUM_POINTS = 120
@@ -149,7 +149,7 @@ def _inspected(
         measures_before=measures(before),
         measures=measured(motion, done.velocity),
         spectra_before=response_spectra(before, periods, 0.05, "xyz"),
-        spectra=response_spectra(motion, periods, 0.05, ["x", "y", "z", "rotd50"])
+        spectra=response_spectra(motion, periods, 0.05, [one for one in COMPONENTS if one != "rotd100"])
         | response_spectra(motion, periods, damping, ["rotd100"]),
         target=target,
         pulse=shahi_baker_pulse(v, motion.dt) if v[:2].any() else None,

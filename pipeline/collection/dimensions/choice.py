@@ -6,9 +6,12 @@ from collections.abc import Iterable
 from dataclasses import replace
 from math import hypot, pi
 
-from pipeline.collection.dimensions.parts import DETAILS, FRAMED, MOUTHS, is_base, is_detail
+from pipeline.collection.dimensions.parts import DETAILS, FRAMED, MOUTHS, is_base, is_bore, is_detail
 from pipeline.collection.dimensions.result import Choice, Chosen, DimensionPart, Dimensions
 from pipeline.quantities import figures
+
+USUAL = ("height", "width", "depth")
+"""The order of numbers that nothing labels, where their source writes no other."""
 
 _FACES = {"mount": 4, "mat": 4, "sheet": 5, "page": 5, "image": 6, "composition": 6, "plate": 6, "block": 6}
 HANGS = "framed, as it hangs"
@@ -21,6 +24,8 @@ _SAME_HEIGHT = 0.1
 """Difference of two heights up to which both are the thing's, with and without a finial or a foot."""
 _OPEN = 1.0
 """Diameter of a mouth over the height from which a vessel is a bowl, and its mouth the widest of it."""
+_IN_PLAN = "beside a height with a label, and so in plan"
+"""How the reason ends of what is said of two bare numbers: "H. 180 cm, 60 x 50 cm"."""
 _FLAT = 0.5
 """First number of a base over its second from which both lie in plan; below it the first is the base's own height."""
 
@@ -72,8 +77,9 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
             whole = [g for g in alike if g[0].name == chosen[0].name and _has_height(g, out["height"].value)]
             sides = max((_extents(g, _reason(g, 1, False)) for g in whole), key=len, default=out)
             out = sides | out
-            if len(out) == 1:
-                out |= _plan_beside(alike, chosen)
+            pairs = [g for g in alike if len(g) == 2 and g[0].name == chosen[0].name and all(p.assumed for p in g)]
+            if len(out) == 1 and len(pairs) == 1:
+                out = _extents(_in_plan([*chosen, *pairs[0]]), _IN_PLAN) | out
     if "height" not in out:
         # A figure's height beside the width over its knees, each a group of its own.
         figures = [
@@ -106,18 +112,6 @@ def _in_plan(group: list[DimensionPart]) -> list[DimensionPart]:
         return group
     turned = {id(part): side for part, side in zip(bare, ("width", "depth"), strict=True)}
     return [replace(p, dimension=turned[id(p)], assumed=False) if id(p) in turned else p for p in group]
-
-
-def _plan_beside(alike: list[list[DimensionPart]], upright: list[DimensionPart]) -> dict[str, Choice]:
-    """Return width and depth of two numbers without labels beside a labelled height: "H. 180 cm, 60 x 50 cm"."""
-    pairs = [g for g in alike if len(g) == 2 and all(p.assumed for p in g) and g[0].name == upright[0].name]
-    if len(pairs) != 1 or upright[0].assumed:
-        return {}
-    how = "beside a height with a label, and so in plan"
-    return {
-        side: Choice(part.value or 0.0, part.start, part.end, f"{side}, {how}")
-        for side, part in zip(("width", "depth"), pairs[0], strict=True)
-    }
 
 
 def _telling(alike: list[list[DimensionPart]]) -> list[list[DimensionPart]]:
@@ -193,10 +187,6 @@ def _reason(group: list[DimensionPart], alike: int, framed: bool) -> str:
     return what
 
 
-_USUAL = ("height", "width", "depth")
-"""The order of numbers that nothing labels, where their source writes no other."""
-
-
 def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
     out: dict[str, Choice] = {}
 
@@ -212,8 +202,8 @@ def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
     if len(widest) > 1:
         take("diameter", max(widest, key=lambda p: p.value or 0.0), f"diameter, the largest of {len(widest)}")
     assumed = tuple(part.dimension for part in group if part.assumed)
-    usual = "length" not in assumed and (len(assumed) < len(_USUAL) or assumed == _USUAL)
-    by = f", by the order {' x '.join(_USUAL if usual else assumed)}"
+    usual = "length" not in assumed and (len(assumed) < len(USUAL) or assumed == USUAL)
+    by = f", by the order {' x '.join(USUAL if usual else assumed)}"
     for part in group:
         if part.dimension in ("height", "width", "depth", "diameter"):
             take(part.dimension, part, f"{part.dimension}{by * part.assumed}")
@@ -269,7 +259,7 @@ def _base(group: list[DimensionPart]) -> dict[str, Choice]:
 
 def _mass(dimensions: Dimensions, chosen: list[DimensionPart]) -> Choice | None:
     masses = [p for p in dimensions.parts if p.dimension == "weight" and p.value is not None and p.value > 0.0]
-    masses = [p for p in masses if not p.name.endswith("bore")]  # a gun of ten pounds shoots as much
+    masses = [p for p in masses if not is_bore(p.name)]  # a gun of ten pounds shoots as much
     if not masses:
         return None
     group = chosen[0].group if chosen else -1

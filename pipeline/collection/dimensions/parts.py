@@ -40,11 +40,16 @@ def is_opening(name: str) -> bool:
     return not name.startswith(_WHOLE) and bool(ROUND.intersection(name.split()))
 
 
+def is_bore(name: str) -> bool:
+    """Say whether a name is that of a gun's bore, however much is said before it."""
+    return name.split()[-1:] == [_BORE]
+
+
 def is_detail(name: str) -> bool:
     """Say whether a name is that of a part whose size is not the object's."""
     words = name.split()
-    if words[-1:] == [_BORE]:
-        return True  # however much is said before it, it says what the number is of
+    if is_bore(name):
+        return True
     if len(words) > _SENTENCE:
         return False
     return not name.startswith(_WHOLE) and (name == _HOLLOW or bool(DETAILS.intersection(words)))

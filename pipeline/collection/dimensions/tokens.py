@@ -75,7 +75,7 @@ _SAME_LENGTH = (
 _LABELS_IN_BRACKETS = re.compile(r"\A\s*[\[(][^\W\d_]{1,10}\.?[\])]\s*\d")
 """A text that begins so, "[H] 45 [W] 20 cm", has each label before its number."""
 _IN_BRACKETS = re.compile(r"[\[(]([^\W\d_]{1,10}\.?)[\])](?=\s*\d)")
-_LISTED = re.compile(r"(?:\A|(?<=[;\n]))(\s*)\(?([a-h])[:.)](?=\s*\d+(?:[.,]\d+)?\s*[x×])", re.IGNORECASE)
+_LISTED = re.compile(r"(?:\A|(?<=[;\n]))\s*\(?([a-h])[:.)](?=\s*\d+(?:[.,]\d+)?\s*[x×])", re.IGNORECASE)
 """What a list of things begins an entry with: "a: 45 x 20 cm; b: 44 x 20 cm"."""
 _THOUSANDS = re.compile(
     rf"(?<![\d.,/'’])([1-9]\d?){_BLANK}(\d{{3}})"
@@ -199,17 +199,18 @@ def _plain(text: str) -> str:
         text = pattern.sub(words, text)
     if _LABELS_IN_BRACKETS.match(text):
         text = _IN_BRACKETS.sub(lambda found: f" {found[1]} ", text)
-    if (listed := [found[2].lower() for found in _LISTED.finditer(text)]) and listed == list("abcdefgh"[: len(listed)]):
-        text = _LISTED.sub(lambda found: " " * len(found[0]), text) if len(listed) > 1 else text
+    listed = "".join(_LISTED.findall(text)).lower()
+    if len(listed) > 1 and "abcdefgh".startswith(listed):
+        text = _LISTED.sub(lambda found: " " * len(found[0]), text)
     text = _THOUSANDS.sub(_joined, text)
     return _SLASHED.sub(_parted, text) if "/" in text else text
 
 
 def _joined(parted: re.Match[str]) -> str:
     """Return thousands without their blank, as long as before."""
-    before = re.search(r"([^\W\d_]+)[.:\s]*\Z", parted.string[: parted.start()])
-    label = before is None or _is_side(before[1].lower()) or before[1].lower() in ("x", "weight", "gewicht", "poids")
-    return f" {parted[1]}{parted[2]}" if label else str(parted[0])
+    before = _BEFORE.search(parted.string, 0, parted.start())
+    whole = before is None or before[1].lower() == "x" or _is_side(before[1].lower())
+    return f" {parted[1]}{parted[2]}" if whole else str(parted[0])
 
 
 def _parted(slashed: re.Match[str]) -> str:

@@ -7,12 +7,10 @@ from collections import Counter
 from collections.abc import Sequence
 
 from pipeline.collection.dimensions import parse
+from pipeline.collection.dimensions.choice import USUAL
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.names import LEGEND
-
-USUAL = ("height", "width", "depth")
-"""The order that is taken where nothing tells another."""
 
 FEWEST = 3
 """Texts that must label their numbers before the others are read in their order (judgement)."""

@@ -59,7 +59,7 @@ def named_by(
     Column or None
     """
     filled = {name for name, column in found.items() if column.filled}
-    if filled.intersection(("object_name",)) or "object_name" in chosen:
+    if "object_name" in filled or "object_name" in chosen:
         return None
     title = found.get("title")
     if title is None or not title.filled:
