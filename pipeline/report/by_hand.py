@@ -72,9 +72,13 @@ def inches(metres: float, *, up: bool) -> str:
 
 
 def _weight(value: float, *, up: bool) -> str:
-    """Write a weight with two significant digits below a hundred and three above, the last one rounded up if asked."""
+    """Write a weight with two significant digits, the last one rounded up if asked; a found mass of a hundred with three.
+
+    What is asked of a mount rests on a mass that hardly anybody has weighed: a third digit would claim what is not known.
+    """
     if value <= 0.0:
         return significant(value, 2)
-    digits = 2 if value < 100.0 else 3
-    last = 10.0 ** (floor(log10(value)) + 1 - digits)
-    return significant(ceil(value / last - 1e-6) * last if up else value, digits)
+    if not up:
+        return significant(value, 2 if value < 100.0 else 3)
+    last = 10.0 ** (floor(log10(value)) - 1)
+    return significant(ceil(value / last - 1e-6) * last, 2)

@@ -198,8 +198,8 @@ def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
     assert numbers_to_set(alone, Units("in")) == "moment 37\u202flb at an arm of 1 ft"
     assert numbers_to_set(one, Units("in")) == numbers_to_set(one, Units("ft")) == imperial
     assert numbers_to_set(advice(force=(2.0 * 0.45359237 * G, "N")), Units("in")) == "to hold 2\u202flb"
-    # Three digits above a hundred, the last one up: 1,234 N are 125.83 kg.
-    assert numbers_to_set(advice(force=(1234.0, "N")), Units("cm")) == "to hold 126\u202fkg"
+    # Two digits, the last one up: 1,234 N are 125.83 kg.
+    assert numbers_to_set(advice(force=(1234.0, "N")), Units("cm")) == "to hold 130\u202fkg"
 
 
 def test_what_pieces_hold_they_hold_in_all_and_a_dot_is_no_strip() -> None:
