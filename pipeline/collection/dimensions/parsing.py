@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from pipeline.collection.dimensions.labels import labelled
+from pipeline.collection.dimensions.labels import labelled, labels_in
 from pipeline.collection.dimensions.lexicon import label_words, languages, meanings, units
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.reader import Reader
@@ -120,6 +120,15 @@ def parse(
         _part(group, number, q) for number, group in enumerate(_ordered(groups, notes, order)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
+
+
+def labels(text: str, decimal: str = ".") -> tuple[frozenset[str], tuple[str, ...]]:
+    """Return the short labels of a text, such as H and L, and the languages that explain them best.
+
+    text, decimal : as of `parse`
+    """
+    head = text[:LONGEST]
+    return labels_in(tokens_of(head, decimal), head)
 
 
 def _with_joins(found: re.Match[str]) -> str:
