@@ -64,7 +64,8 @@ IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 def fold(text: str) -> str:
     """Return a text without capitals and accents, so that Büste, buste and BUSTE are the same word."""
     if not text.isascii():
-        text = "".join(c for c in normalize("NFKD", text) if not combining(c))
+        # In capitals nobody can tell the two i of Turkish apart.
+        text = "".join(c for c in normalize("NFKD", text) if not combining(c)).replace("ı", "i")
     return text.casefold()
 
 
