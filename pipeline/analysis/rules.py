@@ -200,7 +200,9 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     kinds = _kinds(item.classification) | _kinds(item.object_name)
     classed, made = _wordless(item, kinds, of)
     name = _named(item, item.object_name, kinds, of) if item.object_name else _made_as(item, kinds, of)
-    if name is None and item.object_name:
+    # What a table of classifications knows, such as silkscreen, is no screen.
+    called = _kinds(item.object_name)
+    if name is None and item.object_name and not any(rule.kinds & called for rule in of.classed):
         text, share = akin(item.object_name[:_READ], of)
         kin = _named(item, text, kinds, of)
         name = None if kin is None else replace(kin, share=share)

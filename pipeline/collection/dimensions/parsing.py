@@ -37,6 +37,10 @@ _LEGEND = re.compile(
 )
 """The same before numbers that joins part already: height/width 3 1/2 x 4 in."""
 
+_DASHED = re.compile(r"(?<![^\W_])([^\W\d_]{1,2})-(?=\d)")
+"""A label that a dash parts from its number: H-7 W-24 L-68 cm."""
+_DASHED_SIDES = frozenset("hwldbt")
+
 
 def parse(
     text: str, *, default_unit: str | None = None, decimal: str = ".", language: str = "", order: Sequence[str] = ()
@@ -83,7 +87,7 @@ def parse(
         raise InputError(f'decimal must be "." or ",", not {decimal!r}')
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
-    head = _LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, text[:LONGEST]))
+    head = _undashed(_LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, text[:LONGEST])))
     decimal = _mark_of(head) or decimal
     told: list[DimensionNote] = []
     tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
@@ -129,6 +133,13 @@ def labels(text: str, decimal: str = ".") -> tuple[frozenset[str], tuple[str, ..
     """
     head = text[:LONGEST]
     return labels_in(tokens_of(head, decimal), head)
+
+
+def _undashed(text: str) -> str:
+    """Return a text with colons for the dashes behind its labels, where several sides have one."""
+    sides = [found[1].casefold() for found in _DASHED.finditer(text)]
+    able = len(sides) > 1 and len(set(sides)) == len(sides) and _DASHED_SIDES.issuperset(sides)
+    return _DASHED.sub(r"\1:", text) if able else text
 
 
 def _with_joins(found: re.Match[str]) -> str:
