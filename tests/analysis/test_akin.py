@@ -31,7 +31,7 @@ def test_a_compound_is_of_the_class_of_its_head_and_never_sure(name: str, taken:
 
 
 def test_kin_are_believed_as_far_as_the_words_of_the_table_bear_it_out() -> None:
-    """Few words in -er are of the class of what is left (a Hungarian szekér is no szék); most that end in trumpet are."""
+    """Few words in -er are of the class of what is left (a Hungarian szekér is no szék); most in -viool are."""
     _, ending = akin("fotoller", rules())
     _, head = akin("marktviool", rules())
     assert 0.0 < ending < 0.5 < head
