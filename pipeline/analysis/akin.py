@@ -7,9 +7,14 @@ table itself: of the words that it knows, how many are of the class that their o
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from functools import cache, lru_cache
+from typing import Annotated
+
+from pydantic import BaseModel, Field
 
 from pipeline.analysis.rule_table import IDEOGRAPH, WORD, RuleTable, fold
+from pipeline.tables import table
+from pipeline.tables.rows import Text, checked, once
 
 _ENDINGS = (
     *(("chi", "co"), ("ghi", "go"), ("i", "o"), ("i", "e"), ("e", "a")),
@@ -67,6 +72,21 @@ def forms(word: str) -> tuple[str, ...]:
     if len(word) >= _PLURAL and word.endswith("e"):
         able.append(word[:-1])
     return tuple(able)
+
+
+class _Homograph(BaseModel):
+    word: Text
+    share: Annotated[float, Field(gt=0.0, lt=1.0)]
+    means: Text
+    source: Text
+
+
+@cache
+def homographs() -> dict[str, float]:
+    """Return the words that name other things in another language, folded, and how far their class is believed."""
+    rows = checked(_Homograph, table("homographs"), "homographs.csv", named="word")
+    once((row.word for row in rows), "word", "homographs.csv")
+    return {fold(row.word): row.share for row in rows}
 
 
 @lru_cache(maxsize=4096)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from pipeline.analysis.akin import akin, forms, known
+from pipeline.analysis.akin import akin, forms, homographs, known
 from pipeline.analysis.rule_table import (
     BREAK,
     IDEOGRAPH,
@@ -206,6 +206,8 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
         text, share = akin(item.object_name[:_READ], of)
         kin = _named(item, text, kinds, of)
         name = None if kin is None else replace(kin, share=share)
+    elif name is not None and name.word in homographs():
+        name = replace(name, share=homographs()[name.word])
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
     title = _named(item, item.title, kinds, of)
