@@ -47,6 +47,8 @@ TABLE_WORDS = {
     "minutes": "How long a measurement takes at the object, in minutes.",
     "surfaces": "What objects stand on: by which words records tell it, alone or beside what is stood on, and on which "
     "furniture it is met by chance.",
+    "homographs": "Words that name other things in another language, and how far their class by rules.csv is believed.",
+    "usual_sizes": "How large things of a class are [m], by which an import tells a unit that cannot be.",
     "survey": "The questions of the survey's sheet.",
     "validation": "What `kouros validate` assumes of a body for which nothing is fitted.",
 }

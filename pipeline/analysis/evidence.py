@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.analysis.rule_table import RuleMatch, RuleTable, fold, stuff, words_of
-from pipeline.analysis.rules import PICTURES, Readings, as_classed, readings
+from pipeline.analysis.rules import PICTURES, Readings, as_classed, readings, without_name
 from pipeline.analysis.shapes import SHAPES, faceless
 from pipeline.collection.dimensions.lexicon import words_for
 from pipeline.records import Item
@@ -279,7 +279,7 @@ def chances_of(item: Item, read: Readings, among: RuleTable | None = None) -> tu
     if read.outright:
         certain = IDENTIFIED if read.decided.evidence.startswith("AAT") else 1.0
         return (Chance(read.decided.rule.object_class, certain),)
-    shares = _several(item, read, among)
+    shares = _several(item, read, among) or _believed(item, read, among)
     if not shares:
         return _chances(signs_of(item, read))
     found: dict[str, float] = {}
@@ -287,6 +287,14 @@ def chances_of(item: Item, read: Readings, among: RuleTable | None = None) -> tu
         for one in _chances(signs):
             found[one.object_class] = found.get(one.object_class, 0.0) + share * one.probability
     return tuple(sorted(starmap(Chance, found.items()), key=lambda one: -one.probability))
+
+
+def _believed(item: Item, read: Readings, among: RuleTable | None) -> list[tuple[float, tuple[str, ...]]]:
+    """Return the signs with and without a name that is only akin to a known word, with the share of each."""
+    share = 1.0 if read.name is None else read.name.share
+    if share == 1.0:
+        return []
+    return [(share, signs_of(item, read)), (1.0 - share, signs_of(item, without_name(read, among)))]
 
 
 def _several(item: Item, read: Readings, among: RuleTable | None) -> list[tuple[float, tuple[str, ...]]]:

@@ -52,6 +52,8 @@ _SUPPORT = re.compile(
     r"\b(?:on|in|with|and|recessed in|auf|sur|su|sobre|op)\s[^,;]{0,40}?\b(?:base|plinth|socle|pedestal)\b"
 )
 """What a medium says of the base."""
+_ELIDED = re.compile(r"(?<= )([dl]) ")
+"""What is left of an article before a vowel, where the table's words are parted: cartel d applique."""
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
 IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
@@ -62,7 +64,8 @@ IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 def fold(text: str) -> str:
     """Return a text without capitals and accents, so that Büste, buste and BUSTE are the same word."""
     if not text.isascii():
-        text = "".join(c for c in normalize("NFKD", text) if not combining(c))
+        # In capitals nobody can tell the two i of Turkish apart.
+        text = "".join(c for c in normalize("NFKD", text) if not combining(c)).replace("ı", "i")
     return text.casefold()
 
 
@@ -203,11 +206,13 @@ class RuleMatch:
     """The rule that decided, and what in the record made it hold ("" where the row asks for no name).
 
     word : the naming word that it found, an ending with its asterisk
+    share : how far it is believed: less than 1 where the record's own word is only akin to that one
     """
 
     rule: Rule
     evidence: str = ""
     word: str = ""
+    share: float = 1.0
 
     @property
     def words(self) -> str:
@@ -268,8 +273,10 @@ def _by_last_letter(endings: Iterable[str]) -> dict[str, tuple[str, ...]]:
 
 def _spanning(words: Iterable[str]) -> re.Pattern[str] | None:
     """Return what finds a phrase with a breaking word in it at the beginning of a text, in singular or plural."""
-    phrases = sorted((re.escape(word) for word in words if BREAK.search(word)), key=lambda one: (-len(one), one))
-    return re.compile(rf"(?:{'|'.join(phrases)})s?\b") if phrases else None
+    # A table's words are letters and spaces alone.
+    phrases = [word for word in words if BREAK.search(_ELIDED.sub(r"\1'", word))]
+    written = [_ELIDED.sub("\\1['\u2019]", word) for word in sorted(phrases, key=lambda one: (-len(one), one))]
+    return re.compile(rf"(?:{'|'.join(written)})s?\b") if phrases else None
 
 
 def _rule(row: _RuleRow, position: int) -> Rule:

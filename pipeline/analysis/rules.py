@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from pipeline.analysis.akin import akin, forms, homographs, known
 from pipeline.analysis.rule_table import (
     BREAK,
     IDEOGRAPH,
@@ -56,44 +57,6 @@ ANY_LIGHT = frozenset({"lamp", "light", "lampe", "lampada", "lampara", "lampa", 
 """Words that name a light of any kind, folded."""
 LIDS = frozenset({"lid", "cover", "deckel", "couvercle", "coperchio", "tapa", "deksel", "capac", "tampa"})
 """Words of what a thing may have and be no other kind for it, folded."""
-_STEM = 2
-"""Letters that must precede an ending such as *statuette."""
-_PLURAL = 6
-"""Letters from which an e at the end may be that of a plural (Handschuhe): plane is no plan, and cane no can."""
-_ENDINGS = (
-    *(("chi", "co"), ("ghi", "go"), ("i", "o"), ("i", "e"), ("e", "a")),
-    *(("ina", "a"), ("ino", "o"), ("ino", "e"), ("etta", "a"), ("etto", "o"), ("ello", "o"), ("ella", "a")),
-    *(("illa", "a"), ("illo", "o"), ("ita", "a"), ("ito", "o"), ("inha", "a"), ("inho", "o"), ("ette", "e")),
-    *(("chen", ""), ("chen", "e"), ("lein", ""), ("lein", "e"), ("etje", ""), ("tje", ""), ("pje", ""), ("je", "")),
-    *(("orna", "a"), ("or", "a"), ("ar", ""), ("er", ""), ("ek", ""), ("ki", "ka"), ("y", "a"), ("y", "")),
-    *(("lari", ""), ("leri", ""), ("lar", ""), ("ler", "")),
-    *(
-        ("ки", "ка"),
-        ("ы", "а"),
-        ("ы", ""),
-        ("и", "а"),
-        ("и", "я"),
-        ("и", "ь"),
-        ("и", ""),
-        ("ик", ""),
-        ("а", ""),
-        ("ов", ""),
-    ),
-    *(
-        ("εσ", "α"),
-        ("εσ", "η"),
-        ("οι", "οσ"),
-        ("α", "ο"),
-        ("ια", "ι"),
-        ("ακι", "ι"),
-        ("ακι", "α"),
-        ("ου", "οσ"),
-        ("ασ", "α"),
-    ),
-)
-"""Endings of plurals and of what is small, folded, and what stands in their place in the word that a table knows."""
-_RELATED = 4
-"""Letters from which a word may be a plural or a small kind of another."""
 _MADE_OF = re.compile(r"木造|木彫|一木造|寄木造|[銅石鉄塑]造|塑像|(?:脱活)?乾漆|金銅|鋳銅|青銅|[陶磁石木銅鉄]製")
 """What a Japanese title begins with that says what its thing is made of: no picture is called so."""
 _OF_STUFF = re.compile(
@@ -237,8 +200,14 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     kinds = _kinds(item.classification) | _kinds(item.object_name)
     classed, made = _wordless(item, kinds, of)
     name = _named(item, item.object_name, kinds, of) if item.object_name else _made_as(item, kinds, of)
-    if name is None and item.object_name:
-        name = _named(item, _related(item.object_name[:_READ], of), kinds, of)
+    # What a table of classifications knows, such as silkscreen, is no screen.
+    called = _kinds(item.object_name)
+    if name is None and item.object_name and not any(rule.kinds & called for rule in of.classed):
+        text, share = akin(item.object_name[:_READ], of)
+        kin = _named(item, text, kinds, of)
+        name = None if kin is None else replace(kin, share=share)
+    elif name is not None and name.word in homographs():
+        name = replace(name, share=homographs()[name.word])
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
     title = _named(item, item.title, kinds, of)
@@ -254,6 +223,13 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     found = [one for one in (name or speaks, classed, made) if one is not None]
     decided = min(found, key=lambda one: one.rule.position, default=RuleMatch(of.rules[-1]))
     return Readings(decided, decided.rule.name in of.own, name, classed, made, title)
+
+
+def without_name(read: Readings, of: RuleTable | None = None) -> Readings:
+    """Return what a record says if the word that names its thing is not the one that it was taken for."""
+    found = [one for one in (read.title, read.classification, read.medium) if one is not None]
+    least = RuleMatch((of or rules()).rules[-1])
+    return replace(read, name=None, decided=min(found, key=lambda one: one.rule.position, default=least))
 
 
 def _is_full(text: str, title: RuleMatch) -> bool:
@@ -333,7 +309,7 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     start = of.spanning.match(folded) if of.spanning is not None else None
     kind = _KIND.search(folded)
     out = [] if kind is None else [one for one in _spelt(of, kind.group(1).split()) if _pictures(of, one)]
-    out += [] if start is None else _spelt(of, start.group().split())
+    out += [] if start is None else _spelt(of, WORD.findall(start.group()))
     out += _inverted(folded, of)
     only = _PART.search(folded)
     if only is not None:
@@ -346,7 +322,7 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
         if len(found) > 1 and found[-1] in _ON_WALLS and found[-2] in of.by_word and _relief(of, found[-2]):
             found.pop()
         for end in range(len(found), 0, -1):
-            for before, word in _known(of, found[end - 1]):
+            for before, word in known(of, found[end - 1]):
                 if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
                     out.append(word)
     return tuple(out)
@@ -361,25 +337,6 @@ def _parts(folded: str) -> Iterator[str]:
             yield part
         if mark is not None:
             at, behind = mark.end(), mark.group()
-
-
-@lru_cache(maxsize=4096)
-def _related(text: str, of: RuleTable) -> str:
-    """Return a name with the words that the table knows for their plurals and small kinds: alabardina, vasi, Krüglein.
-
-    Only of the names of things: in titles too many words end like these. "" where it has none.
-    """
-
-    def base(found: re.Match[str]) -> str:
-        word = found.group()
-        if len(word) < _RELATED or _known(of, word):
-            return word
-        able = (word.removesuffix(end) + other for end, other in _ENDINGS if word.endswith(end))
-        return next((one for one in able if one in of.by_word), word)
-
-    folded = fold(text)
-    other = WORD.sub(base, folded)
-    return "" if other == folded else other
 
 
 def _relief(of: RuleTable, word: str) -> bool:
@@ -397,43 +354,17 @@ def _inverted(folded: str, of: RuleTable) -> Iterator[str]:
     found = _INVERTED.fullmatch(folded)
     if found is not None:
         kind, thing = WORD.findall(found[2]), WORD.findall(found[1])
-        for before, word in _known(of, thing[-1]) if kind and thing else ():
+        for before, word in known(of, thing[-1]) if kind and thing else ():
             if before and before == tuple((*kind, *thing[:-1])[-len(before) :]):
                 yield word
 
 
 def _spelt(of: RuleTable, words: list[str]) -> Iterator[str]:
     """Yield a phrase as the table spells it."""
-    for form in _forms(words[-1]):
+    for form in forms(words[-1]):
         phrase = " ".join((*words[:-1], form))
         if phrase in of.by_word:
             yield phrase
-
-
-@lru_cache(maxsize=65536)
-def _known(of: RuleTable, word: str) -> tuple[tuple[tuple[str, ...], str], ...]:
-    """Return the known words that a word may end: what must stand before it and the whole, the longest phrase first."""
-    forms = _forms(word)
-    whole = [(tuple(phrase.split(" ")[:-1]), phrase) for form in forms for phrase in of.by_last.get(form, ())]
-    ends = [
-        ((), f"*{ending}")
-        for form in forms
-        for ending in of.endings.get(form[-1], ())
-        if form.endswith(ending) and len(form) >= len(ending) + (1 if IDEOGRAPH.match(ending) else _STEM)
-    ]
-    return (*sorted(whole, key=lambda pair: -len(pair[0])), *ends)
-
-
-def _forms(word: str) -> tuple[str, ...]:
-    """Return a word as it stands, then as the singulars that its ending allows in the languages of the table."""
-    forms = [word]
-    if len(word) > 3:
-        if word.endswith("ies"):
-            forms.append(word[:-3] + "y")
-        forms.extend(word[: -len(end)] for end in ("s", "es", "n", "en", "x") if word.endswith(end))
-    if len(word) >= _PLURAL and word.endswith("e"):
-        forms.append(word[:-1])
-    return tuple(forms)
 
 
 @lru_cache(maxsize=4096)

@@ -82,6 +82,8 @@ class Cells:
         texts = [self._local(text) for text in texts]
         if column.units:
             return self._sum(name, column, texts)
+        if column.first:
+            texts = [next((text for text in texts if self._tells(text, column)), "")]
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
@@ -112,6 +114,13 @@ class Cells:
         self.provenance.append(Provenance(name, Origin.MEASURED, written))
         # No negative zero: it equals zero, but a database may not give it back.
         return metric + 0.0
+
+    def _tells(self, text: str, column: ColumnMap) -> bool:
+        """Whether a cell of several says anything: a text that is not missing, and no number that means so."""
+        text = text.strip(_SPACE)
+        number = self._plain(text)
+        nought = _NUMBER.fullmatch(number) and any(float(number) == m for m in column.missing if not isinstance(m, str))
+        return not (_missing(text, column) or nought)
 
     def integer(self, name: str, column: ColumnMap, texts: Sequence[str]) -> int | None:
         """Return a whole number.

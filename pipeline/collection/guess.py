@@ -16,6 +16,7 @@ from pipeline.collection.guessing.columns import (
     Column,
     candidates,
     captions_of_dimensions,
+    length_beside,
     material_and_technique,
     prose_of_dimensions,
     usual_place,
@@ -31,7 +32,7 @@ from pipeline.collection.guessing.fields import (
     tells_display,
 )
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named, unit_in
-from pipeline.collection.guessing.orders import order_of
+from pipeline.collection.guessing.orders import language_of, order_of, unit_of_texts
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -236,7 +237,9 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         told.questions[:] = [question for question in told.questions if question.key != "medium"]
         told.sure.append(f"the medium is {' and '.join(repr(column.name) for column in both)} together")
     second = None if "object_number" in told.choices else _second_number(columns, found)
-    writer = Fields(columns, told.choices, told.doubts, told.questions, usual, found.get("gallery"), both, second)
+    length = None if "depth_m" in told.choices else length_beside(columns, found.get("depth_m"))
+    place = found.get("gallery")
+    writer = Fields(columns, told.choices, told.doubts, told.questions, usual, place, both, second, length)
     fields, used = writer.mapped(found)
     saying, field = (about, "title") if about is not None else (naming if described else None, "object_name")
     if saying is not None and field in fields:
@@ -262,15 +265,24 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
         units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
-        if len(units) == 1:
-            document["dimensions"]["unit"] = units.pop()
+        language, said = language_of(texts)
+        if language:
+            document["dimensions"]["language"] = language
+            told.doubts.append(said)
+        unit, said = (units.pop(), "") if len(units) == 1 else unit_of_texts(texts, language)
+        if unit:
+            document["dimensions"]["unit"] = unit
+        told.doubts += [said] * bool(said)
         order, said = order_of(texts)
         if order:
             document["dimensions"]["order"] = list(order)
         told.doubts += [said] * bool(said)
     taken = {id(column) for column in (*used, *texts)}
     left = [column for column in columns if id(column) not in taken and column.filled]
-    lost = [one for one in left if is_length(one.name) or (one.numeric and is_side(one.name))]
+    # What measurements in rows of their own call a length is read.
+    lost = [
+        one for one in left if "long" not in source and (is_length(one.name) or (one.numeric and is_side(one.name)))
+    ]
     if lost:
         told.doubts.append(
             f"no field takes the numbers of {', '.join(repr(column.name) for column in lost[:10])}; --choose "

@@ -113,7 +113,8 @@ class ColumnMap(MappingPart):
     separator: str = Field(default=" ", description="What stands between the texts of several columns.")
     first: bool = Field(
         default=False,
-        description="Of several columns only the first that says anything counts: a temporary place, else the usual.",
+        description="Of several columns only the first that says anything counts: a temporary place, else the usual; a "
+        "depth, else the length.",
     )
     units: tuple[str, ...] = Field(
         default=(),
@@ -384,7 +385,7 @@ def _fault(field: str, column: ColumnMap) -> str:
         return f"unit_column is for lengths and masses whose unit is not {WRITTEN!r}; leave it out"
     if not units and column.unit is not None:
         return f"unit is for lengths ({', '.join(LENGTHS)}) and masses ({', '.join(MASSES)}) only; leave it out"
-    if column.columns and kind != "text" and column.unit != WRITTEN:
+    if column.columns and not column.first and kind != "text" and column.unit != WRITTEN:
         return f"only texts can be joined from several columns, this is a {kind}; name one column"
     if column.opening and kind != "text":
         return f"opening is for texts, this is a {kind}; leave it out"
@@ -413,7 +414,9 @@ def _fault(field: str, column: ColumnMap) -> str:
 def _several_fault(kind: str, units: Collection[str], column: ColumnMap) -> str:
     if column.first:
         return (
-            "" if kind == "text" and len(column.columns) > 1 and not column.units else "first is for texts of columns"
+            ""
+            if kind in ("text", "number") and len(column.columns) > 1 and not column.units and column.unit != WRITTEN
+            else "first is for texts and numbers of columns"
         )
     if not units or len(column.columns) != len(column.units) or not set(column.units) <= set(units):
         return f"units needs one of {', '.join(units) or 'none'} for each of its columns, of a length or a mass"

@@ -17,12 +17,13 @@ from pipeline.collection.inventory.source_rows import hold_source, known_rows
 from pipeline.collection.limits import Limits
 from pipeline.collection.mapping import load_mapping, preset_file, preset_names
 from pipeline.collection.reading import NOWHERE, Reading, read_items
-from pipeline.collection.source_audit import require_settled
+from pipeline.collection.source_audit import judged, require_settled
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.registry import is_address
 from pipeline.collection.unit_audit import Suspicion
 from pipeline.night.source_state import mapping_of, source_key
 from pipeline.night.unknown_names import unknown_names
+from pipeline.night.usual_sizes import unfit_sizes
 from pipeline.operations.workspace import IMPORTS, Workspace
 from pipeline.quantities import figures
 from pipeline.records import Item, Problem
@@ -137,11 +138,11 @@ def proposed(
     from pipeline.collection.guess import guess
 
     found = guess(source, table, choices)
-    reading = read_items(source, found.mapping)
+    reading = _with_sizes(read_items(source, found.mapping), found.mapping)
     crossed = _exchanged(reading.suspicions, found.mapping, choices or {})
     if crossed:
         again = guess(source, table, {**(choices or {}), **crossed})
-        right = read_items(source, again.mapping)
+        right = _with_sizes(read_items(source, again.mapping), again.mapping)
         if not any(one.holds == "sides" for one in right.suspicions):
             told = next(one.message for one in reading.suspicions if one.holds == "sides")
             kept = " ".join(f"--choose {field}={found.mapping.columns[field].column}" for field in crossed)
@@ -159,6 +160,14 @@ def proposed(
         shown, named = source, Path(source).stem
     unknown = unknown_names(reading.items)
     return Proposed(named, shown, found, reading.rows, len(reading.items), examples, reading.suspicions, unknown)
+
+
+def _with_sizes(reading: Reading, mapping: "CollectionMapping") -> Reading:
+    """Return a reading with what the classes of its objects say of its unit, where nothing else says so already."""
+    if any(one.holds == "units" for one in reading.suspicions):
+        return reading
+    open_, settled = judged(unfit_sizes(reading.items), mapping.holds)
+    return replace(reading, suspicions=(*reading.suspicions, *open_), choices=(*reading.choices, *settled))
 
 
 def _in_words(item: Item) -> str:
@@ -200,7 +209,8 @@ def import_collection(
     """
     key = source_key(workspace.settings, source, mapping)
     known = known_rows(workspace.engine, key) if nightly else None
-    reading = read_items(source, mapping_of(workspace.settings, mapping), accepted(workspace.settings), known)
+    read = mapping_of(workspace.settings, mapping)
+    reading = _with_sizes(read_items(source, read, accepted(workspace.settings), known), read)
     if nightly:
         stays = held(workspace.engine, reading.sha256)
         if stays is not None:

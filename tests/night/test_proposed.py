@@ -49,10 +49,12 @@ def named(names: list[str]) -> list[Item]:
 
 
 def test_a_museum_hears_that_its_words_are_of_a_language_that_is_not_known() -> None:
-    finnish = ["Rukki", "Kirnu", "Kuksa"] * 10
-    said = unknown_names(named([*finnish, *["Vase"] * 10]))
-    assert said.startswith("75% of the objects are called what names no class here, such as 'Rukki', 'Kirnu', 'Kuksa'")
+    unknown = ["Argizaiola", "Kirnu", "Kuksa"] * 10
+    said = unknown_names(named([*unknown, *["Vase"] * 10]))
+    assert said.startswith(
+        "75% of the objects are called what names no class here, such as 'Argizaiola', 'Kirnu', 'Kuksa'"
+    )
     assert "[collection] rules" in said
-    assert unknown_names(named([*finnish[:10], *["Vase"] * 30])) == ""
-    assert unknown_names(named(["Rukki"] * 19)) == ""
+    assert unknown_names(named([*unknown[:10], *["Vase"] * 30])) == ""
+    assert unknown_names(named(["Kirnu"] * 19)) == ""
     assert unknown_names([]) == ""

@@ -4,7 +4,7 @@ from pipeline.collection.dimensions.choice import choose
 from pipeline.collection.dimensions.doubts import doubts
 from pipeline.collection.dimensions.lexicon import languages
 from pipeline.collection.dimensions.pairing import agree
-from pipeline.collection.dimensions.parsing import parse
+from pipeline.collection.dimensions.parsing import labels, parse
 from pipeline.collection.dimensions.result import Choice, Chosen, DimensionNote, DimensionPart, Dimensions
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "agree",
     "choose",
     "doubts",
+    "labels",
     "languages",
     "parse",
 ]

@@ -62,18 +62,10 @@ def labelled(tokens: list[Token], text: str, language: str, notes: list[Dimensio
         As many as before.
     """
     tokens = _upright(tokens)
-    places = list(_places(tokens, text))
-    if not _TURKISH.intersection(token.word for token in tokens):
-        places = [at for at in places if tokens[at].word != "en"]
-    if _COMPONENTS.issubset({token.word for token in tokens}):
-        places = [at for at in places if tokens[at].word not in _NUMBERING]
+    places = _labels_in(tokens, text)
     if not places:
         return tokens
-    if language:
-        best = [languages()[language]]
-    else:
-        words = {token.word for token in tokens if token.type in (WORD, DIMENSION)}
-        best = _likeliest({text[tokens[at].start : tokens[at].end] for at in places}, words)
+    best = [languages()[language]] if language else _spoken(tokens, text, places)
     if not best:
         return tokens
     chosen = best[0]
@@ -106,6 +98,40 @@ def labelled(tokens: list[Token], text: str, language: str, notes: list[Dimensio
             told.add(written)
         out[at] = Token(DIMENSION, token.start, token.end, token.word, ("dimension", meaning), token.unit)
     return out
+
+
+def labels_in(tokens: list[Token], text: str) -> tuple[frozenset[str], tuple[str, ...]]:
+    """Return the short labels of a text, and the languages that explain them best.
+
+    Parameters
+    ----------
+    tokens : list of Token
+        Of the text.
+    text : str
+        The text itself.
+
+    Returns
+    -------
+    (frozenset of str, tuple of str)
+        As they are written; names of languages, none where none explains them.
+    """
+    places = _labels_in(tokens, text)
+    labels = frozenset(text[tokens[at].start : tokens[at].end] for at in places)
+    return labels, tuple(one.name for one in _spoken(tokens, text, places)) if places else ()
+
+
+def _labels_in(tokens: list[Token], text: str) -> list[int]:
+    places = list(_places(tokens, text))
+    if not _TURKISH.intersection(token.word for token in tokens):
+        places = [at for at in places if tokens[at].word != "en"]
+    if _COMPONENTS.issubset({token.word for token in tokens}):
+        places = [at for at in places if tokens[at].word not in _NUMBERING]
+    return places
+
+
+def _spoken(tokens: list[Token], text: str, places: list[int]) -> list[LabelLanguage]:
+    words = {token.word for token in tokens if token.type in (WORD, DIMENSION)}
+    return _likeliest({text[tokens[at].start : tokens[at].end] for at in places}, words)
 
 
 def _upright(tokens: list[Token]) -> list[Token]:

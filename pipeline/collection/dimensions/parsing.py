@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from pipeline.collection.dimensions.labels import labelled
+from pipeline.collection.dimensions.labels import labelled, labels_in
 from pipeline.collection.dimensions.lexicon import label_words, languages, meanings, units
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.reader import Reader
@@ -36,6 +36,10 @@ _LEGEND = re.compile(
     r"(?P<legend>\b[^\W\d_]+\.?(?: ?/ ?[^\W\d_]+\.?){1,2})(?= ?[:=]? ?\d[\d ./,]{0,12}(?:[a-z]{1,2}\.? ?)?[x×] ?\d)"
 )
 """The same before numbers that joins part already: height/width 3 1/2 x 4 in."""
+
+_DASHED = re.compile(r"(?<![^\W_])([^\W\d_]{1,2})-(?=\d)")
+"""A label that a dash parts from its number: H-7 W-24 L-68 cm."""
+_DASHED_SIDES = frozenset("hwldbt")
 
 
 def parse(
@@ -83,7 +87,7 @@ def parse(
         raise InputError(f'decimal must be "." or ",", not {decimal!r}')
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
-    head = _LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, text[:LONGEST]))
+    head = _undashed(_LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, text[:LONGEST])))
     decimal = _mark_of(head) or decimal
     told: list[DimensionNote] = []
     tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
@@ -120,6 +124,22 @@ def parse(
         _part(group, number, q) for number, group in enumerate(_ordered(groups, notes, order)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
+
+
+def labels(text: str, decimal: str = ".") -> tuple[frozenset[str], tuple[str, ...]]:
+    """Return the short labels of a text, such as H and L, and the languages that explain them best.
+
+    text, decimal : as of `parse`
+    """
+    head = text[:LONGEST]
+    return labels_in(tokens_of(head, decimal), head)
+
+
+def _undashed(text: str) -> str:
+    """Return a text with colons for the dashes behind its labels, where several sides have one."""
+    sides = [found[1].casefold() for found in _DASHED.finditer(text)]
+    able = len(sides) > 1 and len(set(sides)) == len(sides) and _DASHED_SIDES.issuperset(sides)
+    return _DASHED.sub(r"\1:", text) if able else text
 
 
 def _with_joins(found: re.Match[str]) -> str:

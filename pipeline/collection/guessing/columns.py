@@ -20,6 +20,7 @@ from pipeline.collection.guessing.names import (
     is_length,
     named,
     tells_material,
+    unit_in,
 )
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
@@ -31,6 +32,9 @@ NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
 _SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d", re.DOTALL)
+_BOTH = 0.05
+"""How many objects with length and depth there may be for each that has a length alone (judgement)."""
+
 _NAMED = ("height", "width", "depth", "diameter", "length")
 
 FEWEST = 10
@@ -238,6 +242,25 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
         if free is not None:
             out[free] = [column]
     return out
+
+
+def length_beside(columns: Sequence[Column], depth: Column | None) -> Column | None:
+    """Return the column of lengths that tells what the column of depths leaves open, of boats what of chests it does.
+
+    None where many objects have both, for these are three sides in plan.
+    """
+    said = (column for column in columns if column.numeric and is_length(column.name) and column is not depth)
+    column = next(said, None)
+    if column is None or depth is None or unit_in(column.name)[1] != unit_in(depth.name)[1]:
+        return None
+    pairs = [(bool(_told(one)), bool(_told(other))) for one, other in zip(column.values, depth.values, strict=False)]
+    alone, both = pairs.count((True, False)), pairs.count((True, True))
+    return column if alone and both <= _BOTH * alone else None
+
+
+def _told(text: str) -> bool:
+    """Whether a cell says a number other than nought."""
+    return bool(text.strip(" 0.,"))
 
 
 def usual_place(columns: Sequence[Column], found: dict[str, Column]) -> Column | None:

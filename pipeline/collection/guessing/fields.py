@@ -194,6 +194,8 @@ class Fields:
         Of materials and of techniques, where a file tells each in a column of its own.
     second : Column or None
         Of other numbers, for objects of which that of the objects' numbers says only that they have none.
+    length : Column or None
+        Of the lengths of objects that have no depth.
     """
 
     columns: Sequence[Column]
@@ -204,6 +206,7 @@ class Fields:
     place: Column | None = None
     medium: tuple[Column, ...] = ()
     second: Column | None = None
+    length: Column | None = None
 
     def mapped(self, found: Mapping[str, Column]) -> tuple[tomlkit.items.Table, list[Column]]:
         """Return the section, and the columns that it reads.
@@ -244,6 +247,9 @@ class Fields:
             if name == "object_number" and self.second is not None:
                 entry = self._or_second(column, self.second)
                 used.append(self.second)
+            if name == "depth_m" and self.length is not None and entry is not None and "column" in entry:
+                self._or_length(entry, self.length)
+                used.append(self.length)
             if name == "medium" and self.medium:
                 entry = tomlkit.table()
                 entry["columns"], entry["separator"] = [one.name for one in self.medium], ", "
@@ -258,6 +264,14 @@ class Fields:
         entry["columns"], entry["first"] = [column.name, usual.name], True
         self.doubts.append(f"an object's place is {column.name!r}, and where that is empty {usual.name!r}")
         return entry
+
+    def _or_length(self, entry: tomlkit.items.Table, length: Column) -> None:
+        depth = str(entry.pop("column"))
+        entry["columns"], entry["first"], entry["missing"] = [depth, length.name], True, [0.0]
+        self.doubts.append(
+            f"the depth is {depth!r}, and where that tells none {length.name!r}; --choose depth_m={depth} leaves that "
+            "out"
+        )
 
     def _or_second(self, column: Column, second: Column) -> tomlkit.items.Table:
         entry = tomlkit.table()

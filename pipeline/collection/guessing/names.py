@@ -38,7 +38,7 @@ _JOINED = re.compile(r"(\w{4,}?)(mm|cm|in|ft|kg|lb|lbs|oz)", re.IGNORECASE)
 """A name of one word that ends with a unit: "HEIGHTIN", "weightKg"."""
 _UNIT = {"inch": "in", "inches": "in", "lbs": "lb", "gr": "g"}
 _NUMBER_WORDS = frozenset(
-    ["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar", "αρ", "αριθμοσ", "numarası"]
+    ["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar", "αρ", "αριθμοσ", "numarasi"]
 )
 _STOP = frozenset(
     {
@@ -50,7 +50,7 @@ _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
 _GLUED = re.compile(r"(\w{3,}?)(?:number|nummer|num|nr|no)")
 """A name of one word that ends with a word for number: "accessionnum"."""
-_GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Obj|Acc|Ide|Dim|Mea)(?=[A-Z])")
+_GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Obj|Acc|Ide|Dim|Mea|Reg|Tax|Cla|Spe|Sta|Dar)(?=[A-Z])")
 """Before a name: of which group of fields it is, in systems that write it so (EMu, MuseumPlus): "TitObjectNumber"."""
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _TYPED = re.compile(r"(?<=[a-z])(?:Txt|Clb|Vrt|Num|Voc|Lnu)$")
@@ -206,7 +206,8 @@ def plain(name: str) -> str:
         c for c in normalize("NFKD", _ELIDED.sub(" ", _CAMEL.sub(" ", normalize("NFC", name)))) if not combining(c)
     )
     # NFKD takes the voicing marks off Japanese signs; they are put together again.
-    words = _OTHER.sub(" ", normalize("NFC", bare).casefold()).split()
+    # In capitals nobody can tell the two i of Turkish apart.
+    words = _OTHER.sub(" ", normalize("NFC", bare).casefold().replace("ı", "i")).split()
     kept = ["no" if word in _NUMBER_WORDS else word for word in words if word not in _STOP]
     return " ".join(kept or words)
 
@@ -401,6 +402,7 @@ def _forms(name: str) -> Iterator[str]:
         yield plain(_GROUPED.sub("", typed))
     if _GROUPED.match(path[-1]):
         yield plain(_GROUPED.sub("", path[-1]))
+        yield plain(unit_in(_GROUPED.sub("", path[-1]))[0])
     # What stands in brackets may be a language.
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:

@@ -1,13 +1,18 @@
-"""In which order a source writes sizes that nothing labels: as the head of its column, or its other texts, have it."""
+"""What the texts of a column say of each other: their order, the language of their labels, the unit that some omit.
+
+A source writes alike: what nothing labels is as the head of its column, or its other texts, have it.
+"""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
 from collections.abc import Sequence
+from statistics import median
 
-from pipeline.collection.dimensions import parse
+from pipeline.collection.dimensions import labels, languages, parse
 from pipeline.collection.dimensions.choice import USUAL
+from pipeline.collection.dimensions.result import DimensionPart
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.names import LEGEND
@@ -17,6 +22,15 @@ FEWEST = 3
 
 MOST = 0.9
 """Share of those texts that must have one order."""
+
+FEWEST_UNITS = 5
+"""Texts that must name a unit before others are read in it (judgement)."""
+
+ALIKE = 0.95
+"""Share of those texts that must name the same, and of texts whose labels a language must know."""
+
+FARTHEST = 8.0
+"""How many times larger or smaller the median of what names no unit may be (judgement)."""
 
 _SOME = 1000
 """Texts of a column that are asked."""
@@ -61,6 +75,80 @@ def order_of(columns: Sequence[Column]) -> tuple[tuple[str, ...], str]:
         f"{bare} texts give sizes without labels: read as {' x '.join(order)}, as {often} of the column's texts with "
         "labels have it; take order out of [dimensions] where that is wrong"
     )
+
+
+def language_of(columns: Sequence[Column]) -> tuple[str, str]:
+    """Return the language of the labels that texts of dimensions have, and what to say of it.
+
+    "H. 30 cm" alone is a height in English and a length in Hungarian: what most of the column's other texts can only
+    be tells.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of dimension texts.
+
+    Returns
+    -------
+    (str, str)
+        "" where each text is read by itself.
+    """
+    read = [labels(plain_text(text)) for column in columns for text in column.distinct[:_SOME]]
+    read = [(those, able) for those, able in read if those]
+    sure = Counter(able[0] for those, able in read if len(able) == 1 and len(those) > 1)
+    if not sure:
+        return "", ""
+    name, often = sure.most_common(1)[0]
+    meaning = languages()[name].meaning
+    known = sum(all(map(meaning, those)) for those, _ in read)
+    if name == "en" or often < max(FEWEST, MOST * sum(sure.values())) or known < ALIKE * len(read):
+        return "", ""
+    return name, (
+        f"short labels of sizes are read as the language {name} has them, which those of {often} of {len(read)} texts "
+        "can only be; take language out of [dimensions] where that is wrong"
+    )
+
+
+def unit_of_texts(columns: Sequence[Column], language: str) -> tuple[str, str]:
+    """Return the unit of the lengths that name none, as the column's other texts have it, and what to say of it.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of dimension texts.
+    language : str
+        Of their labels; "" where each text is read by itself.
+
+    Returns
+    -------
+    (str, str)
+        "" where all name one, or too few, or several, or where what names none would be of quite another size.
+    """
+    texts = [plain_text(text) for column in columns for text in column.distinct[:_SOME]]
+    read = [_lengths(parse(text, language=language).parts) for text in texts]
+    bare = [text for text, parts in zip(texts, read, strict=True) if parts and not any(part.unit for part in parts)]
+    told = [parts for parts in read if parts and parts[0].unit]
+    if not bare or len(told) < FEWEST_UNITS:
+        return "", ""
+    unit, often = Counter(parts[0].unit for parts in told).most_common(1)[0]
+    if often < ALIKE * len(told):
+        return "", ""
+    theirs = median(_largest(parts) for parts in told)
+    others = median(_largest(_lengths(parse(text, language=language, default_unit=unit).parts)) for text in bare)
+    if not theirs / FARTHEST < others < theirs * FARTHEST:
+        return "", ""
+    return unit, (
+        f"{len(bare)} texts name no unit: read in {unit}, as {often} of {len(told)} others have it; take unit out "
+        "of [dimensions] where that is wrong"
+    )
+
+
+def _lengths(parts: Sequence[DimensionPart]) -> list[DimensionPart]:
+    return [part for part in parts if part.dimension != "weight"]
+
+
+def _largest(parts: Sequence[DimensionPart]) -> float:
+    return max((part.value or 0.0 for part in parts), default=0.0)
 
 
 def _many(legend: str) -> int:

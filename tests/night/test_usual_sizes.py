@@ -1,0 +1,77 @@
+"""A unit that cannot be: the real sizes of the bundled museum, told to be in another unit than they are."""
+
+from __future__ import annotations
+
+import csv
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from pipeline.collection.mapping import Mapping, load_mapping
+from pipeline.collection.reading import read_items
+from pipeline.collection.source_audit import ContradictionError, require_settled
+from pipeline.night.importing import bundled_collection, proposed
+from pipeline.night.usual_sizes import unfit_sizes
+from pipeline.records import Item
+from tests.museum import carnegie
+
+HOUSE = Path(__file__).parents[1] / "data" / "collections" / "whole_exports" / "learn" / "house.csv"
+SIDES = ("HEIGHTIN", "WIDTHIN", "LENGTHIN", "DEPTHIN", "DIAMIN")
+
+
+@cache
+def _read_in(unit: str) -> tuple[Item, ...]:
+    """The bundled museum, whose columns are in inches, read as if they were in another unit."""
+    right = load_mapping("carnegie")
+    columns = {
+        name: one.model_copy(update={"unit": unit}) if one.unit == "in" else one for name, one in right.columns.items()
+    }
+    wrong: Mapping = right.model_copy(update={"columns": columns})
+    return tuple(read_items(bundled_collection(), wrong).items)
+
+
+def test_sizes_in_their_own_unit_are_not_doubted() -> None:
+    assert unfit_sizes(carnegie().items) == ()
+
+
+@pytest.mark.parametrize(("unit", "much"), [("mm", "small"), ("m", "large")])
+def test_a_unit_that_makes_all_things_too_large_or_too_small_stops_the_import(unit: str, much: str) -> None:
+    (one,) = unfit_sizes(_read_in(unit))
+    does, could = map(int, re.findall(r"\d+", one.message)[:2])
+    assert could >= 200
+    assert does >= 0.95 * could
+    assert f"far too {much}" in one.message
+    assert one.message.endswith("they would fit in cm")  # inches are nearer to centimetres than to what was said
+    assert one.holds == "units"
+    with pytest.raises(ContradictionError, match=r"\[holds\] units"):
+        require_settled("export.csv", [one])
+
+
+def _as(folder: Path, unit: str, factor: float) -> Path:
+    """Write the rows of a house with its sizes in metres or millimetres, and a unit in the head of each column."""
+    with HOUSE.open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    path = folder / "export.csv"
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow([f"{name.removesuffix('IN').title()} ({unit})" if name in SIDES else name for name in rows[0]])
+        for row in rows:
+            writer.writerow([f"{float(row[n]) * factor:.4g}" if n in SIDES and row[n] else row[n] for n in row])
+    return path
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "fits"),
+    [("cm", 0.0254, "m"), ("cm", 25.4, "mm"), ("mm", 2.54, "cm"), ("cm", 2.54, ""), ("m", 0.0254, "")],
+)
+def test_columns_whose_heads_name_the_wrong_unit(unit: str, factor: float, fits: str, tmp_path: Path) -> None:
+    said = [one.message for one in proposed(str(_as(tmp_path, unit, factor))).suspicions if one.holds == "units"]
+    assert [message.rpartition(" ")[2] for message in said] == [fits] * bool(fits)
+
+
+def test_too_few_things_and_things_of_no_usual_size_say_nothing() -> None:
+    items = [one for one in _read_in("m") if "chair" in one.title.casefold()]
+    assert unfit_sizes(items[:5]) == ()
+    assert unfit_sizes([]) == ()
