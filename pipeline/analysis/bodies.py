@@ -5,10 +5,28 @@ from dataclasses import replace
 from pipeline.analysis.mounts import MountGuess
 from pipeline.records import Furniture, Item, Support
 from pipeline.tables.assumed_rows import Material, ObjectClass
-from pipeline.tables.body_rows import PAIR, BodyRow, body_of
+from pipeline.tables.body_rows import PAIR, SCREEN, BodyRow, body_of
 
 SOFT = ("inflated", "feathers")
 """Materials of which rocking harms nothing: judgement."""
+
+
+LEAF = 0.05
+"""Depth over height below which the recorded depth of a folding screen is that of one leaf: judgement."""
+
+
+def as_it_stands(item: Item, shape: BodyRow | None) -> Item:
+    """Return a record without the depth of a single leaf, where a folding screen stands: folded it is deeper.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    shape : BodyRow or None
+        What is known of its shape.
+    """
+    leaf = shape is not None and shape.body == SCREEN and (item.depth_m or 0.0) < LEAF * (item.height_m or 0.0)
+    return replace(item, depth_m=None) if leaf else item
 
 
 def on_floor(item: Item, shape: BodyRow | None) -> Item:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
-from pipeline.analysis.bodies import body, on_floor
+from pipeline.analysis.bodies import as_it_stands, body, on_floor
 from pipeline.analysis.furniture import furniture_of, in_furniture
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
 from pipeline.analysis.house.matching import HouseRules
@@ -134,11 +134,11 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     if not models:
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
-    item = on_floor(replace(item, surface_material=stance.laid.surface_material), shape)
+    item = as_it_stands(on_floor(replace(item, surface_material=stance.laid.surface_material), shape), shape)
     builder = SceneParameters(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:
-        builder.missing.extend(_unheld(stance.taken, support))
+        builder.missing.extend(_unheld(as_it_stands(stance.taken, shape), support))
     if support is Support.ISOLATED and item.isolator != FRICTION_ISOLATOR.name:
         # Its record has no numbers of springs: as if it stood on the floor it would be told to be off display.
         builder.missing.append(UNTOLD_ISOLATOR)

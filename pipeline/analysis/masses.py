@@ -13,7 +13,7 @@ from pipeline.tables import Range
 from pipeline.tables.assumed import UNKNOWN
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.body_rows import SCREEN, BodyRow
-from pipeline.tables.fill_rows import fills
+from pipeline.tables.fill_rows import fill_of
 
 _FRAMED = (5.0, 15.0, 40.0)
 """Mass of a square metre of a framed work [kg/m2], by judgement: low, best, high."""
@@ -66,7 +66,7 @@ def mass_of(
     """
     if item.mass_kg is not None:
         return Estimate.measured(item.mass_kg, "kg")
-    box, own = _outline(item, row), None if shape is not None else _shell_fill(row, material)
+    box, own = _outline(item, row), None if shape is not None else _shell_fill(item, row, material)
     screen = shape is not None and shape.body == SCREEN
     fill = own or row.filled
     # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
@@ -102,7 +102,7 @@ def solid_mass(item: Item, row: ObjectClass, material: Material) -> Estimate | N
         None where its section is recorded, or nothing says that it may be hollow.
     """
     box, filled = _outline(item, row), row.filled
-    if item.section_width_m is not None or box is None or filled is None or _shell_fill(row, material) is None:
+    if item.section_width_m is not None or box is None or filled is None or _shell_fill(item, row, material) is None:
         return None
     mass = box * filled.value * material.density_range.value
     return Estimate(mass, "kg", Origin.ASSUMED, mass, mass, say.SOLID(mass=mass), "judgement")
@@ -116,6 +116,6 @@ def _outline(item: Item, row: ObjectClass) -> float | None:
     return item.height_m * across * along * (0.25 * pi if row.round else 1.0)
 
 
-def _shell_fill(row: ObjectClass, material: Material) -> Range | None:
+def _shell_fill(item: Item, row: ObjectClass, material: Material) -> Range | None:
     """Return how much of its outline fills.csv says that it fills; a museum's own row of the class goes before."""
-    return None if row.own else fills().get((row.name, material.name))
+    return None if row.own else fill_of(row.name, material.name, item.height_m or 0.0)

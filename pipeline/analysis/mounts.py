@@ -12,7 +12,7 @@ from pipeline.analysis.house.effect import HouseEffect
 from pipeline.analysis.house.matching import MOUNTED_BY
 from pipeline.analysis.section import share_of
 from pipeline.analysis.sizes import SIZES, Sizes, sizes_known
-from pipeline.records import Estimate, Item, Mount, Origin
+from pipeline.records import Estimate, Item, Mount, Origin, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
 from pipeline.tables.held_rows import told_by
@@ -80,7 +80,9 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect) -> MountGuess | N
         that was measured.
     """
     rows, told, words = mount_rows(), house.stated.get("mount"), told_by(item.displayed).mount
-    if words is not None and item.support in (None, row.support):
+    # What leans does so whatever its class: a panel on an easel hangs no more.
+    leans = words is Mount.LEANING and item.support is Support.FREESTANDING
+    if words is not None and (leans or item.support in (None, row.support)):
         return MountGuess(rows[words], Origin.MEASURED)
     if WHEN_HELD not in row.models:
         return None

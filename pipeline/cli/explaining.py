@@ -132,7 +132,7 @@ def _advice(advice: "Recommendation") -> Iterator[str]:
     values = ", ".join(f"{name} {_number(v)} {advice.units[name]}" for name, v in advice.parameters.items())
     yield f"  advice, {advice.level}: {advice.title}" + (f" ({values})" if values else "")
     from pipeline.mitigate.by_class import NAMED_FIRST
-    from pipeline.mitigate.search import ANCHORED, ONLY_HERE
+    from pipeline.mitigate.saying import ANCHORED, ONLY_HERE
 
     if advice.sentence.startswith(ANCHORED):
         yield f"    {ANCHORED}"

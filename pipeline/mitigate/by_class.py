@@ -10,7 +10,7 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue
 from pipeline.mitigate.installed import InstalledMeasure, Placed, PlacedAs, placed_more, stood_of
 from pipeline.mitigate.measures.remove import LAST_RESORTS
-from pipeline.mitigate.search import ANCHORED
+from pipeline.mitigate.saying import ANCHORED
 from pipeline.mitigate.trials import HarmAim, most_sampled
 from pipeline.records import Recommendation, Scene
 

@@ -9,7 +9,6 @@ from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.figures import chart_key
 from pipeline.analysis.furniture import FurnitureFilter, fastened, filter_of, loose
-from pipeline.analysis.told import held_as_displayed
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.deficiencies import deficiencies, levels_asked, may_fall, of_unassessed
@@ -18,11 +17,8 @@ from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, bends
-from pipeline.mitigate.measures.clearance import hung_by
-from pipeline.mitigate.measures.fixings import FINISHED, finishes
 from pipeline.mitigate.measures.remove import LAST_RESORTS
 from pipeline.mitigate.proposals import (
-    STANDING,
     UNCONCERNED,
     Candidate,
     Case,
@@ -33,50 +29,12 @@ from pipeline.mitigate.proposals import (
     company,
     refused,
 )
+from pipeline.mitigate.saying import ANCHORED, ONLY_HERE, TAKES_ALONG, said_besides
 from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
 from pipeline.models.common import N_
-from pipeline.records import Estimate, Finding, Likelihood, Mark, Numerics, Origin, Recommendation, Scene, Verdict
-from pipeline.records import phrases as say
+from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 from pipeline.tables.mount_rows import mount_rows
-
-ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
-"""Follows the sentence of a measure that holds at one level only."""
-
-AT_BEST = (
-    "It holds by the best estimates, and not at the worse ends of all that is assumed: "
-    "have its mass, its base and its weakest section measured first."
-)
-"""Follows the sentence of a measure whose models pass by the best estimates only."""
-
-SIZED = "It holds so by the best estimates of weight, base and strength: weigh it and measure its base first."
-"""Follows the sentence of a fixing that has its factor of safety by the best estimates, and whose models all pass."""
-
-HEAVIEST = (
-    "That is for {heaviest}, the most that it may weigh; by the best estimate it weighs {weight}: "
-    "weigh it first: if it is lighter, the mount may be lighter in proportion."
-)
-"""Follows the sentence of a measure that is built for a force, where its mass is assumed and may be twice the best."""
-
-OF_MEAN = "That is for the mean of the earthquakes: in the worst of them it moves {worst}."
-"""Follows the sentence of a measure that gives room, where the mean of the motions of a level decides."""
-
-UPPER_FIRST = "First fix each upper body to the one that it stands on: loose, it falls sooner than all together."
-"""Comes before the sentence of a measure for two bodies and more that are followed as one."""
-
-HELD_FIRST = (
-    "First record the brace, clips or ties that its record tells of as installed: until then they do not count."
-)
-"""Comes before the sentence of a measure for what is held by more than its base, as the words for its display say."""
-
-UNWEIGHED = 2.0
-"""Largest over best estimate of an assumed mass from which on whoever builds for a force is told so."""
-
-TAKES_ALONG = 10.0
-"""Mass [kg] from which on nothing is fixed to loose furniture: that may be as light, and falls with it; judgement."""
-
-ANCHORED = "Fasten what it stands in to the floor or a wall first."
-"""Comes before the sentence of a measure that is enough only where its furniture is fastened too."""
 
 Unit = tuple[Deficiency, ...]
 """Objects that one measure is for: one, or all that share a support."""
@@ -234,7 +192,8 @@ def _advised(
         search = _Search(runner, deficiencies(scenes, findings, some, stands, likely), unassessed)
         for done, measure in enumerate(have.measures, start=1):
             if measure.isolator or measure.last_resort:
-                search.settles()
+                # A platform under it may leave less than a fastening that leaves too much.
+                search.settles(enough=bool(measure.isolator) and not measure.mounts)
             search.tries(measure)
             runner.progress.step("recommendations", at * len(have.measures) + done, len(rounds) * len(have.measures))
         alone = len(some) < len(levels)
@@ -264,10 +223,14 @@ class _AtBest:
     rejected: Sequence[str]
 
     @property
+    def remaining(self) -> list[Mapping[str, Likelihood]]:
+        """How likely harm is that it leaves, of each trial by level."""
+        return [self.left.get(id(trial), {}) for trial in self.candidate.trials]
+
+    @property
     def remains(self) -> float:
         """How likely harm is that it leaves, at the worst level; 0 where nobody drew it."""
-        drawn = [self.left.get(id(trial), {}) for trial in self.candidate.trials]
-        return max((one.expected for each in drawn for one in each.values()), default=0.0)
+        return max((one.expected for each in self.remaining for one in each.values()), default=0.0)
 
 
 @dataclass
@@ -318,13 +281,18 @@ class _Search:
             return refused(N_("what it would be fixed to is not fastened and may fall"))
         return measure.propose_shared(unit, self.runner) if measure.shared else measure.propose(unit[0], self.runner)
 
-    def settles(self) -> None:
-        """Let what passes by the best estimates stand, where nothing that fastens is sure."""
-        for index, found in self.at_best.items():
+    def settles(self, *, enough: bool = False) -> None:
+        """Let what passes by the best estimates stand, where nothing that fastens is sure.
+
+        enough : only what leaves as little harm as is wanted
+        """
+        for index, found in list(self.at_best.items()):
+            if enough and self.runner.aims and not self.runner.reaches_aim(found.remaining):
+                continue
+            del self.at_best[index]
             if index not in self.helped:
                 self.rejected[index] = list(found.rejected)
                 self._recommend(found.unit, found.measure, found.candidate, (), found.results, found.left, at_best=True)
-        self.at_best.clear()
 
     def _units(self, pending: Sequence[Deficiency], measure: Measure) -> list[Unit]:
         if not measure.shared:
@@ -422,23 +390,8 @@ class _Search:
                 words |= {"what": company(unit, one, unknown), "how": options[at].said}
             numbers = {**candidate.numbers, **candidate.finish(ran)}
             name, title, sentence = measure.called(one.scene.item)
-            more = f" {AT_BEST}" if at_best else f" {SIZED}" if candidate.at_best else ""
-            mass = one.scene.parameters.get("mass")
-            # The force on pieces is told by the best estimate of its mass, their number by the worst.
-            if "force" in numbers and "pieces" not in numbers and mass is not None and _unweighed(mass):
-                numbers |= {"heaviest": (mass.high, "kg"), "weight": (mass.value, "kg")}
-                more = f" {HEAVIEST}{more}"
-            if measure.for_room and "clearance" in numbers and any(level.of_mean for level in self.runner.levels):
-                worst = self.runner.farthest(one.scene)
-                if worst > numbers.get("movement", (0.0, "m"))[0]:
-                    numbers |= {"worst": (worst, "m")}
-                    more = f" {OF_MEAN}{more}"
-            if measure.touches and one.scene.support in STANDING and finishes(one.scene.item, self.runner.values):
-                more = f" {FINISHED}{more}"
-            more = f"{hung_by(one.scene) if measure.for_room else ''}{more}"
-            first = f"{UPPER_FIRST} " if {say.TWO_BODIES(), say.STACKED()} & set(one.scene.assumptions) else ""
-            if held_as_displayed(one.scene.item, one.scene.support):
-                first = f"{HELD_FIRST} {first}"
+            first, more, added = said_besides(measure, candidate, one, numbers, self.runner, at_best=at_best)
+            numbers |= added
             self.helped.add(one.index)
             if measure.fastens:
                 self.fastened.add(one.index)
@@ -451,7 +404,7 @@ class _Search:
                     level=level,
                     measure=name,
                     title=title,
-                    sentence=first + _filled(sentence, words).rstrip() + more,
+                    sentence=" ".join((*first, _filled(sentence, words).rstrip(), *more)),
                     parameters={key: value for key, (value, _) in numbers.items()},
                     units={key: unit_ for key, (_, unit_) in numbers.items()},
                     checks=(
@@ -488,10 +441,6 @@ def _takes_along(one: Deficiency) -> bool:
     """Say whether what an object would be fixed to is loose, and light enough to be taken along by it."""
     mass = one.scene.parameters.get("mass")
     return mass is not None and mass.value >= TAKES_ALONG and may_fall(one.findings)
-
-
-def _unweighed(mass: Estimate) -> bool:
-    return mass.origin is Origin.ASSUMED and mass.high >= UNWEIGHED * mass.value
 
 
 def _band_unknown(scene: Scene) -> bool:

@@ -6,7 +6,7 @@ from functools import cache, cached_property
 from math import fsum
 
 from pipeline.analysis.stakes import expected_loss, to_check
-from pipeline.mitigate.search import ANCHORED
+from pipeline.mitigate.saying import ANCHORED
 from pipeline.planning.efforts import Efforts, EffortSpan
 from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Recommendation

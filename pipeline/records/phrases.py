@@ -11,12 +11,24 @@ HELD_AS_DISPLAYED = Clause(
     "recorded as installed: {words}"
 )
 TWO_BODIES = Clause(
-    "its height is that of two bodies, a bust and what it stands on, which are followed as one: where the upper one "
-    "stands loose, it falls sooner"
+    "its height is that of two bodies, the upper one and what it stands on, which are followed as one: where the "
+    "upper one stands loose, it falls sooner"
 )
 STACKED = Clause(
     "it is a stack of stones, which are followed as one body: where no pins hold them together, the upper ones slide "
     "and rock on those below, and fall sooner"
+)
+HEAVY_FOR_FURNITURE = Clause(
+    "at {mass:kg~2} it is heavier than {furniture} mostly bears ({bears:kg~2}, judgement): have somebody say what "
+    "bears it"
+)
+HEAVY_FOR_GLASS = Clause(
+    "at {mass:kg~2} it is heavier than a shelf of glass mostly bears ({bears:kg~2}, judgement): have somebody say what "
+    "bears it"
+)
+HEAVY_FOR_FLOOR = Clause(
+    "it loads its floor by {load:kg/m2~2}, where floors of museums are made for {bears:kg/m2~2}: unless it stands on "
+    "the ground, ask an engineer"
 )
 MOUNT = Clause("mount: it {mount}, assumed for: {told}")
 NOT_RECORDED = Clause("not recorded")
@@ -136,6 +148,7 @@ HAS_NO_ROOM = Clause("it would need {room:cm~0f} of room, more than the {allowed
 PLATE = Clause("it would need a plate {width:cm~0f} wide")
 PLATFORM = Clause("its platform would have to be {width:cm~0f} wide")
 LENGTH_ALLOWED = Clause("{limit:cm~0f} is allowed")
+HARM_REMAINS_WITH_BALLAST = Clause("with {mass:kg~2} of ballast harm would remain with a probability of {chance:%~0f}")
 BALLAST = Clause("it would need {share:%~0f} of its mass")
 SHARE_ALLOWED = Clause("{limit:%~0f} is allowed")
 LARGER_SECTION = Clause("its section would have to be {times:-~2} times as large")

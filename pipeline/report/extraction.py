@@ -17,18 +17,19 @@ from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.installed import ON_TOP
 from pipeline.mitigate.measures import MEASURES
-from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED
 from pipeline.mitigate.measures.horizontal_isolator import GENERIC
 from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
-from pipeline.mitigate.search import (
+from pipeline.mitigate.saying import (
     ANCHORED,
     AT_BEST,
+    ENGINEER,
     HEAVIEST,
     HELD_FIRST,
     OF_MEAN,
     ONLY_HERE,
+    SAID_AS_IT_IS,
     SIZED,
     UPPER_FIRST,
 )
@@ -102,8 +103,8 @@ def _of_measures() -> Iterator[str]:
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
     yield from (
-        TWICE,
-        FOURFOLD,
+        *SAID_AS_IT_IS,
+        ENGINEER,
         FINISHED,
         ONLY_HERE,
         AT_BEST,

@@ -44,6 +44,8 @@ class BodyRow(TableRow):
         Height from which it holds [m].
     cg_ratio, base_ratio, section_ratio, fill : float or None
         As in classes.csv, with the ends of their ranges; of its base all bears that is within the range.
+    round : bool
+        Whether it is as deep as it is wide.
     rocking_harms : bool
         Whether rocking itself harms it.
     source : str
@@ -62,13 +64,14 @@ class BodyRow(TableRow):
     base_ratio: Share
     base_low: Share
     base_high: Share
-    section: Literal["", "foot"]
+    section: Literal["", "foot", "ring"]
     section_ratio: Share
     section_low: Share
     section_high: Share
     fill: Share
     fill_low: Share
     fill_high: Share
+    round: YesNo
     rocking_harms: YesNo
     source: Text
 
@@ -90,8 +93,10 @@ class BodyRow(TableRow):
         row : ObjectClass
             Kouros's own.
         """
-        numbers = {name: getattr(self, name) for name in (*_NUMBERS, "section", "title", "rocking_harms", "source")}
-        out = row.model_copy(update={**numbers, "round": False, "base_source": ""})
+        numbers = {
+            name: getattr(self, name) for name in (*_NUMBERS, "section", "title", "round", "rocking_harms", "source")
+        }
+        out = row.model_copy(update={**numbers, "base_source": ""})
         for name in _FOUND:
             # What was worked out of the class is not of this body.
             out.__dict__.pop(name, None)

@@ -6,6 +6,7 @@ What is made of metal is sheet, cast hollow, or of rods: a silver bowl fills a f
 from collections.abc import Mapping
 from functools import cache
 from types import MappingProxyType
+from typing import Annotated
 
 from pydantic import Field, ValidationInfo, field_validator
 
@@ -22,6 +23,8 @@ class FillRow(TableRow):
         Row of classes.csv.
     materials : tuple of str
         Rows of materials.csv.
+    taller_than : float
+        Height from which it holds [m]; of several rows that hold the one of the largest counts.
     fill, fill_low, fill_high : float
         Volume of the material over that of the outline [-].
     source : str
@@ -30,6 +33,7 @@ class FillRow(TableRow):
 
     object_class: Text = Field(alias="class")
     materials: Entries
+    taller_than: Annotated[Number, Field(ge=0.0)]
     fill: Number
     fill_low: Number
     fill_high: Number
@@ -42,13 +46,13 @@ class FillRow(TableRow):
 
 
 @cache
-def fills() -> Mapping[tuple[str, str], Range]:
+def fills() -> Mapping[tuple[str, str], tuple[tuple[float, Range], ...]]:
     """Return how much of its outline a thing fills, by class and material, where fills.csv says it.
 
     Returns
     -------
-    mapping of (str, str) to Range
-        [-].
+    mapping of (str, str) to tuple of (float, Range)
+        Heights from which on [m], the largest first, and shares [-].
 
     Raises
     ------
@@ -56,9 +60,23 @@ def fills() -> Mapping[tuple[str, str], Range]:
         Naming the line of fills.csv.
     """
     rows = checked(FillRow, table("fills"), "fills.csv", named="class")
-    pairs = [(row.object_class, material) for row in rows for material in row.materials]
-    once((f"{name} of {material}" for name, material in pairs), "class", "fills.csv")
-    found = [
-        Range(row.fill, row.fill_low, row.fill_high, f"fills.csv ({row.source})") for row in rows for _ in row.materials
-    ]
-    return MappingProxyType(dict(zip(pairs, found, strict=True)))
+    each = [(row, material) for row in rows for material in row.materials]
+    once((f"{row.object_class} of {name} from {row.taller_than:g} m on" for row, name in each), "class", "fills.csv")
+    found: dict[tuple[str, str], list[tuple[float, Range]]] = {}
+    for row, material in each:
+        share = Range(row.fill, row.fill_low, row.fill_high, f"fills.csv ({row.source})")
+        found.setdefault((row.object_class, material), []).append((row.taller_than, share))
+    return MappingProxyType({key: tuple(sorted(some, key=lambda one: -one[0])) for key, some in found.items()})
+
+
+def fill_of(object_class: str, material: str, height: float) -> Range | None:
+    """Return how much of its outline a thing fills [-], None where its class alone says it.
+
+    Parameters
+    ----------
+    object_class, material : str
+        Rows of classes.csv and materials.csv.
+    height : float
+        [m], 0 where it is not recorded.
+    """
+    return next((share for above, share in fills().get((object_class, material), ()) if height >= above), None)

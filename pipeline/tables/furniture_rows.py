@@ -63,6 +63,16 @@ Length = Annotated[Optional, AfterValidator(_long)]
 FloorFriction = Annotated[Optional, AfterValidator(_rough)]
 """A cell that holds the friction of furniture on its floor, or nothing."""
 
+
+def _above_0(cell: float | None) -> float | None:
+    if cell is not None and not cell > 0.0:
+        raise InputError(f"must be above 0, not {cell:g}")
+    return cell
+
+
+Above0 = Annotated[Optional, AfterValidator(_above_0)]
+"""A cell that holds a mass or a force, or nothing."""
+
 _RANGES = ("frequency", "damping", "half_width", "cg_height", "friction")
 
 _BODY = ("half_width", "cg_height", "friction", "shelf_height")
@@ -88,6 +98,10 @@ class FurnitureRow(AssumedRow):
         gravity with what stands in it [m], and friction on its floor [-].
     shelf_height : float or None
         At which objects stand in it or on it [m].
+    bears : float or None
+        Mass that it mostly bears [kg]; what is heavier is doubted.
+    takes : float or None
+        Force that fixings on it may bring into it [N]; what is more is an engineer's work.
     """
 
     # Columns that a museum's own table leaves out are checked as if they were empty.
@@ -116,6 +130,8 @@ class FurnitureRow(AssumedRow):
     friction_low: FloorFriction = None
     friction_high: FloorFriction = None
     shelf_height: Length = None
+    bears: Above0 = None
+    takes: Above0 = None
 
     @field_validator(*(f"{name}_high" for name in _RANGES))
     @classmethod

@@ -13,7 +13,7 @@ from pipeline.analysis.survey import measurable_of, measurables
 from pipeline.records import Furniture, Item, Origin, Support, times_too_thin
 from pipeline.tables import Range, Row, table
 from pipeline.tables.assumed import assumed, span
-from pipeline.tables.fill_rows import fills
+from pipeline.tables.fill_rows import fill_of
 from tests import museum
 
 VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
@@ -171,7 +171,7 @@ def test_every_range_of_class_and_material_travels_to_the_models(row: Row, mater
     tensile = [float(stuff[c]) for c in ("tensile_low", "tensile", "tensile_high")]
     assert [getattr(found["allowable_stress"], s) for s in ends] == tensile
     box = 0.3 * 0.3 * item.height_m * (pi / 4 if row["round"] == "yes" else 1.0)  # type: ignore[operator]
-    fill = fills().get((row["class"], stuff["material"])) or Range(
+    fill = fill_of(row["class"], stuff["material"], item.height_m or 0.0) or Range(
         *(float(row[c]) for c in ("fill", "fill_low", "fill_high")), ""
     )
     filled = zip((fill.low, fill.value, fill.high), ("_low", "", "_high"), strict=True)

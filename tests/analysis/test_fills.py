@@ -2,6 +2,7 @@
 
 import csv
 from dataclasses import replace
+from math import pi
 from pathlib import Path
 
 import pytest
@@ -32,6 +33,7 @@ def test_every_class_and_material_of_the_table_is_one() -> None:
         ("Sculpture", "Bronze", (1.43, 0.37, 0.24), 27.2),
         ("Sculpture", "Cast iron", (0.57, 0.97, 0.55), 171.9),
         ("Sculpture", "Painted steel", (3.93, 3.54, 2.77), 2948.4),
+        ("Sculpture", "Wood", (1.283, 0.638, 0.73), 25.9),
     ],
 )
 def test_metal_weighs_what_it_does(name: str, medium: str, sizes: tuple[float, float, float], kilograms: float) -> None:
@@ -41,6 +43,23 @@ def test_metal_weighs_what_it_does(name: str, medium: str, sizes: tuple[float, f
     mass = classify(item).parameters["mass"]
     assert mass.low <= kilograms <= mass.high
     assert 0.25 <= mass.value / kilograms <= 4.0
+
+
+@pytest.mark.parametrize(
+    ("height", "across", "wall", "density"), [(0.45, 0.36, 0.010, 2300.0), (0.64, 0.41, 0.007, 1950.0)]
+)
+def test_a_large_vessel_weighs_what_its_wall_does(height: float, across: float, wall: float, density: float) -> None:
+    """A jar of stoneware and an amphora of terracotta, as a spheroid's shell of an even wall."""
+    medium = "stoneware" if density > 2000.0 else "terracotta"
+    a, c = 0.5 * across, 0.5 * height
+    volume = 4.0 / 3.0 * pi * (a * a * c - (a - wall) ** 2 * (c - wall))
+    jar = Item("1", "G", object_name="jar", medium=medium, height_m=height, width_m=across, depth_m=across)
+    mass = classify(jar).parameters["mass"]
+    assert mass.low <= density * volume <= mass.high
+    assert mass.value == pytest.approx(density * volume, rel=0.35)
+    # What is no taller than a hand is thicker for its size.
+    small = classify(replace(jar, height_m=0.1 * height / across, width_m=0.1, depth_m=0.1)).parameters["mass"]
+    assert small.value / (0.1 / across) ** 3 > 1.5 * mass.value
 
 
 def test_a_museums_own_row_of_a_class_goes_before(tmp_path: Path) -> None:

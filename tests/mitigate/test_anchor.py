@@ -14,7 +14,8 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.installed import InstalledMeasure, assess_above, placed
-from pipeline.mitigate.search import ANCHORED, advise
+from pipeline.mitigate.saying import ANCHORED
+from pipeline.mitigate.search import advise
 from pipeline.motions import read_motion
 from pipeline.records import Anchorage, Finding, Furniture, Item, Motion, Scene, Support, Verdict
 from pipeline.records.numerics import HISTORIES

@@ -18,7 +18,7 @@ from pipeline.execute import Threads
 from pipeline.mitigate import changed
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures.brace import LEVER, STIFFER
-from pipeline.mitigate.search import HEAVIEST, UNWEIGHED
+from pipeline.mitigate.saying import HEAVIEST, UNWEIGHED
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
 from pipeline.records import Furniture, Hanging, Item, Motion, Numerics, Support, Verdict

@@ -14,7 +14,7 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.measures.base import held
-from pipeline.mitigate.search import AT_BEST, SIZED
+from pipeline.mitigate.saying import AT_BEST, SIZED
 from pipeline.motions import read_site
 from pipeline.quantities import Array, G
 from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRecord, Support, Verdict

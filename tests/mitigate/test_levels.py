@@ -16,7 +16,7 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import MeasureCatalogue, advise, changed
 from pipeline.mitigate.catalogue import own_catalogue
-from pipeline.mitigate.search import ONLY_HERE
+from pipeline.mitigate.saying import ONLY_HERE
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Recommendation, Verdict

@@ -10,7 +10,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import advise
-from pipeline.mitigate.search import OF_MEAN
+from pipeline.mitigate.saying import OF_MEAN
 from pipeline.models import MODELS
 from pipeline.quantities import G
 from pipeline.records import Furniture, Item, Recommendation, Support

@@ -11,7 +11,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.response import respond
 from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED, HARMLESS
-from pipeline.mitigate.search import ANCHORED
+from pipeline.mitigate.saying import ANCHORED
 from pipeline.quantities import G
 from pipeline.records import Anchorage, Furniture, Item, Motion, Support
 from pipeline.report.pages.plainly import plain_measure

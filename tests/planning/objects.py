@@ -2,7 +2,7 @@
 
 from random import Random
 
-from pipeline.mitigate.search import ANCHORED
+from pipeline.mitigate.saying import ANCHORED
 from pipeline.planning.errands import Advised
 
 MEASURES = ("wax", "putty", "ties", "clips", "clamps", "fasten", "horizontal_isolator", "anchor", "close_hooks")

@@ -25,7 +25,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import advise
-from pipeline.mitigate.search import ANCHORED
+from pipeline.mitigate.saying import ANCHORED
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import (

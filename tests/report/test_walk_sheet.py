@@ -9,7 +9,7 @@ from unicodedata import normalize
 import pytest
 from pypdf import PdfReader
 
-from pipeline.mitigate.search import HEAVIEST
+from pipeline.mitigate.saying import HEAVIEST
 from pipeline.quantities import G
 from pipeline.records import Recommendation
 from pipeline.report import render

@@ -12,7 +12,7 @@ from pipeline.cli.console import Console
 from pipeline.cli.explaining import explanation_lines
 from pipeline.cli.options import Options
 from pipeline.collection.database import open_database
-from pipeline.mitigate.search import ANCHORED
+from pipeline.mitigate.saying import ANCHORED
 from pipeline.night.run import run
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import DecisionKind

@@ -21,9 +21,17 @@ TALLEST = 1.2
 """Height [m] above which nobody trusts a thing to wax or putty, though it might hold: judgement."""
 
 
+HEAVIEST = 12.0
+"""Mass [kg] above which nothing is trusted to wax or putty, which creep: judgement, about 25 lb."""
+
+SLIGHT = 2.0
+"""Most mass [kg] of what is so light that more dots cost less than to weigh it: judgement."""
+
+
 class _Dots(Fixing):
     """Dots under its base: they hold by their area, of which its footing has room for a share only."""
 
+    sticks = True
     limits = 1
     limit_unit = "-"
 
@@ -40,7 +48,15 @@ class _Dots(Fixing):
             return refused(N_("it stands on legs, which have no room for it under them"))
         if (one.scene.item.height_m or 0.0) > TALLEST:
             return refused(N_("it is taller than what is stuck down"))
+        mass = one.scene.parameters.get("mass")
+        if mass is not None and mass.value > HEAVIEST:
+            return refused(N_("it is heavier than what is stuck down"))
         return super().propose(one, runner)
+
+    def ample(self, scene: Scene) -> bool:
+        """Say whether it is so light that nobody weighs it: more dots make up for that."""
+        mass = scene.parameters["mass"]
+        return mass.low < mass.high <= SLIGHT
 
     def room(self, scene: Scene, worst: bool) -> float:
         """Return the share of its footing: a round one across the narrower side, the least that it may be."""

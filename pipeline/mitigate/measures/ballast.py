@@ -1,8 +1,9 @@
 """Ballast in the base of an object, which lowers its centre of gravity."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from pipeline.mitigate.measures.base import NOT_FREE, SPARE, Measure, with_parameters
+from pipeline.mitigate.measures.base import SPARE, Measure, with_parameters
+from pipeline.mitigate.measures.fixings import touched
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models.common import N_
@@ -10,9 +11,21 @@ from pipeline.quantities import Quantity
 from pipeline.records import Estimate, Origin, Scene, Support
 from pipeline.records import phrases as say
 
+STEPS = (0.2, 0.4, 0.7, 1.0)
+"""Ballast that is tried, over the most that there may be."""
+
+HEAVIEST = 25.0
+"""Most ballast [kg] that is put into anything: what one person lifts (judgement)."""
+
+SEEN_THROUGH = frozenset({"glass"})
+"""Materials that no ballast is put into: rows of materials.csv."""
+
 
 class Ballast(Measure):
-    """Lower its centre of gravity by ballast: as much as the push asks for, run again with all that is uncertain.
+    """Lower its centre of gravity by ballast.
+
+    Where harm has to be excluded, by so much that it does not rock at all at the worst of what is uncertain.  That is
+    many times what keeps it from falling: where harm has to become unlikely, the least that does it is sought.
 
     References
     ----------
@@ -45,27 +58,76 @@ class Ballast(Measure):
         return with_parameters(scene, cg_height=Estimate(value, "m", Origin.DERIVED, min(ends), max(ends), note))
 
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
-        """Propose the least ballast with which it does not rock at the worst of what is uncertain."""
+        """Propose the least ballast with which it does not rock, or as little as makes harm unlikely enough."""
+        refusal = self._unsuited(one, runner)
+        if refusal:
+            return refused(refusal)
+        if not runner.aims:
+            needed = self._never_rocking(one, runner)
+            return refused(needed) if isinstance(needed, str) else self._of(one, (needed,))
+        remains = runner.once(self.row.name, dict[int, float]).get(one.index)
+        most = self._most(one)
+        if remains is not None:
+            return refused(say.HARM_REMAINS_WITH_BALLAST(mass=most, chance=remains))
+        return self._of(one, tuple(step * most for step in STEPS))
+
+    def prepare(self, objects: Sequence[Deficiency], runner: TrialRunner) -> None:
+        """Find out of all at once for which the most ballast is enough: of most it is not, and no less is tried."""
+        if not runner.aims:
+            return
+        asked = [one for one in objects if not self._unsuited(one, runner)]
+        trials = [Trial(self._with(one, self._most(one))) for one in asked]
+        left = runner.remaining(trials)
+        runner.once(self.row.name, dict[int, float]).update(
+            (one.index, max((each.expected for each in some.values()), default=1.0))
+            for one, some in zip(asked, left, strict=True)
+            if not runner.reaches_aim([some])
+        )
+
+    def _most(self, one: Deficiency) -> float:
+        return min(HEAVIEST, self.row.limit * one.scene.parameters["mass"].value)
+
+    def _unsuited(self, one: Deficiency, runner: TrialRunner) -> str:
         scene = one.scene
         if scene.support is not Support.FREESTANDING:
-            return NOT_FREE
+            return N_("it does not stand free")
         if not {"half_width", "cg_height", "mass"} <= set(scene.parameters):
-            return refused(N_("its base, its mass or its centre of gravity is not known"))
+            return N_("its base, its mass or its centre of gravity is not known")
         if not one.rocks:
-            return refused(N_("it does not rock: a lower centre of gravity does not help"))
+            return N_("it does not rock: a lower centre of gravity does not help")
         if self.row.classes and scene.object_class not in self.row.classes:
-            return refused(N_("objects of its kind have no room for ballast"))
+            return N_("objects of its kind have no room for ballast")
+        if touched(scene.item, runner.values) in SEEN_THROUGH:
+            return N_("ballast in glass is seen, and presses on its wall")
+        return ""
+
+    def _never_rocking(self, one: Deficiency, runner: TrialRunner) -> float | str:
+        """Return the ballast with which it does not rock at the worst of what is uncertain [kg]; in words why none."""
+        scene = one.scene
         mass, cg, half = (scene.parameters[name] for name in ("mass", "cg_height", "half_width"))
         at = self.row.limit_high * cg.value
         # At the worst of what is uncertain: the heaviest and highest body, and the least height that may be left.
         left = half.low / runner.tilt(scene)
         if left <= at:
-            return refused(N_("no ballast brings its centre of gravity low enough"))
+            return N_("no ballast brings its centre of gravity low enough")
         needed = SPARE * mass.high * (cg.high - left) / (left - at)
         share = needed / mass.value
         if share > self.row.limit:
-            return refused(f"{say.BALLAST(share=share)}; {say.SHARE_ALLOWED(limit=self.row.limit)}")
-        numbers = {"mass": (max(needed, 0.0), "kg"), "height": (at, "m")}
-        lowered = self.in_place(one, numbers)
-        numbers["cg_height"] = (lowered.parameters["cg_height"].value, "m")
-        return Proposal((Candidate(numbers, (Trial(lowered),), mark_of="standing"),))
+            return f"{say.BALLAST(share=share)}; {say.SHARE_ALLOWED(limit=self.row.limit)}"
+        return max(needed, 0.0)
+
+    def _with(self, one: Deficiency, ballast: float) -> Scene:
+        at = self.row.limit_high * one.scene.parameters["cg_height"].value
+        return self.change(one.scene, {"mass": ballast, "height": at})
+
+    def _of(self, one: Deficiency, amounts: Sequence[float]) -> Proposal:
+        candidates = []
+        for ballast in amounts:
+            lowered = self._with(one, ballast)
+            numbers = {
+                "mass": (ballast, "kg"),
+                "height": (self.row.limit_high * one.scene.parameters["cg_height"].value, "m"),
+                "cg_height": (lowered.parameters["cg_height"].value, "m"),
+            }
+            candidates.append(Candidate(numbers, (Trial(lowered),), mark_of="standing"))
+        return Proposal(tuple(candidates))

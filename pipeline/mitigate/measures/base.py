@@ -91,6 +91,8 @@ class Measure(ABC):
         Whether it is worth advising where only the assumed room, or furniture that may fall, leaves the verdict open.
     fastens : bool
         Whether it holds an object: where nothing else is sure, it is advised if it passes by the best estimates.
+    sticks : bool
+        Whether it sticks an object down by wax or putty.
     touches : bool
         Whether something presses on the object, rubs it or sticks to it: what is painted or gilded is told so.
     isolator : str
@@ -113,6 +115,7 @@ class Measure(ABC):
     shared: ClassVar[bool] = False
     for_room: ClassVar[bool] = False
     fastens: ClassVar[bool] = False
+    sticks: ClassVar[bool] = False
     touches: ClassVar[bool] = False
     isolator: ClassVar[str] = ""
     mounts: ClassVar[bool] = False
@@ -202,6 +205,19 @@ class Measure(ABC):
         return Proposal((Candidate(numbers, (trial,), checks=checks, finish=finish, mark_of=mark_of),))
 
 
+def may_be_held(scene: Scene) -> bool:
+    """Say whether enough is known of it to hold it: its section, or that it is an open frame which has no one such.
+
+    Of a frame it is for whoever makes the mount to see that it bears the push.
+    """
+    return knows_section(scene) or _framework(scene)
+
+
+def _framework(scene: Scene) -> bool:
+    body = {"mass", "half_width", "cg_height"} <= scene.parameters.keys()
+    return scene.mount is None and body and "section_modulus" not in scene.parameters and not scene.missing
+
+
 def round_up(value: float, step: float = 0.01) -> float:
     """Round up to the next whole step, a centimetre where nothing else is said."""
     return round(step * ceil(value / step - 1e-9), 12) if isfinite(value) else value
@@ -236,9 +252,10 @@ GRIPPED = 100.0
 def held(scene: Scene) -> Scene:
     """Return it held at its base: it neither rocks nor slides, and its critical section bears the push.
 
-    What lies or is held by a mount has no section that is known to be weak: it stays where it is.
+    What lies or is held by a mount has no section that is known to be weak, nor has an open frame: it stays where it
+    is.
     """
-    if scene.mount is not None:
+    if scene.mount is not None or _framework(scene):
         grips = exactly(GRIPPED, "-", "held by the measure: it does not slide")
         return replace(with_parameters(scene, friction_static=grips), mount=Mount.SECURED, models=(SLIDING.name,))
     return replace(fixed_at_base(scene), support=Support.FASTENED, models=models_of(Support.FASTENED))

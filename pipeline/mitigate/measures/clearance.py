@@ -8,7 +8,7 @@ from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, known_t
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models import settled_by_room
 from pipeline.models.common import N_
-from pipeline.records import Check, Scene, Support, Verdict
+from pipeline.records import Check, Furniture, Scene, Support, Verdict
 from pipeline.records import phrases as say
 
 STEPS = (1.0, 1.4, 2.0, 2.8, 4.0, 5.6)
@@ -17,6 +17,13 @@ STEPS = (1.0, 1.4, 2.0, 2.8, 4.0, 5.6)
 
 LIGHT, HALL = 50.0, 2.0
 """Mass of what hangs from above [kg] up to which it may swing, and how much farther than along a wall: judgement."""
+
+LIGHTING = "chandelier"
+"""Class of what may swing whatever it weighs.
+
+ASCE 7-16, sec. 13.6.1, asks for no bracing of light fixtures that hang, where nothing is in their way to any side and
+what they hang by bears 1.4 times their weight down and sideways together.
+"""
 
 HAND = 0.10
 """Room that is spared around anything [m]; more only around what is itself as wide: judgement."""
@@ -149,12 +156,18 @@ class Clearance(Measure):
 def _times(scene: Scene) -> float:
     """Return how many times as much room is spared around what hangs from above and is light: it swings in a hall."""
     mass = scene.parameters.get("mass")
-    light = mass is not None and mass.value <= LIGHT
+    light = scene.object_class == LIGHTING or (mass is not None and mass.value <= LIGHT)
     return HALL if scene.support is Support.SUSPENDED and light else 1.0
 
 
 def _spared(scene: Scene) -> float:
-    """Return how much room a display spares on each side of an object at most: as much as it is wide [m]."""
+    """Return how much room a display spares on each side of an object at most [m].
+
+    On the floor as much as it is wide; in a case, on a shelf or a pedestal a hand's breadth to glass, neighbour or
+    edge, or what is recorded.
+    """
+    if scene.furniture in (Furniture.SHOWCASE, Furniture.SHELF, Furniture.PEDESTAL):
+        return max(HAND, scene.item.clearance_m or 0.0)
     sides = [side for side in (scene.item.width_m, scene.item.depth_m) if side]
     half = scene.parameters.get("half_width")
     return max(HAND, *sides, 2.0 * half.value if half is not None else 0.0)

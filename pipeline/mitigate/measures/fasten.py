@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from functools import partial
 
-from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, held, knows_section
+from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, held, may_be_held
 from pipeline.mitigate.measures.fixings import HOLDS, force_and_moment
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal
 from pipeline.mitigate.trials import Trial, TrialRunner
@@ -31,7 +31,7 @@ class Fasten(Measure):
         """Propose a mount for the force and the moment of the push."""
         if one.scene.support is not Support.FREESTANDING:
             return NOT_FREE
-        if not knows_section(one.scene):
+        if not may_be_held(one.scene):
             return UNKNOWN_SECTION
         finish = partial(force_and_moment, one.scene, runner)
         trial = Trial(self.in_place(one, {}))

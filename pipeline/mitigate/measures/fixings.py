@@ -13,7 +13,15 @@ from pipeline.analysis.footing import rolling
 from pipeline.analysis.model_runs import run_model
 from pipeline.analysis.scene_parameters import material_of
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
-from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, bends, held, knows_section
+from pipeline.mitigate.measures.base import (
+    NOT_FREE,
+    UNKNOWN_SECTION,
+    Measure,
+    bends,
+    held,
+    knows_section,
+    may_be_held,
+)
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models.common import N_
@@ -231,6 +239,10 @@ class Fixing(Measure, ABC):
         """Say why it cannot hold such an object, "" where it may."""
         return ""
 
+    def ample(self, scene: Scene) -> bool:  # noqa: ARG002
+        """Say whether as much of it is used as there is room for, where its weight is not known for sure."""
+        return False
+
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
         """Propose the fewest and smallest pieces that hold it for sure, then those that do by the best estimates."""
         scene = one.scene
@@ -238,11 +250,11 @@ class Fixing(Measure, ABC):
             return NOT_FREE
         if self.row.classes and scene.object_class not in self.row.classes:
             return refused(N_("objects of its kind cannot be held so"))
-        if not knows_section(scene) or not {"half_width", "cg_height"} <= set(scene.parameters):
+        if not may_be_held(scene) or not {"half_width", "cg_height"} <= set(scene.parameters):
             return UNKNOWN_SECTION
         if self.at_foot and rolling(scene.item) is not None:
             return refused(N_("it stands on wheels, and has no foot to be held by"))
-        if self.screwed and UNSCREWED.intersection(surfaces_in(scene.item.surface_material, of_surface=True)):
+        if self.screwed and on_glass(scene.item):
             return refused(N_("it stands on glass, into which nothing is screwed"))
         material, lies_on_it = touched(scene.item, runner.values), finishes(scene.item, runner.values)
         if material in self.strength.harms:
@@ -266,11 +278,11 @@ class Fixing(Measure, ABC):
     def _candidate(self, one: Deficiency, demand: HoldingDemand, care: str, worst: bool) -> Candidate | None:
         if self.unsuited(one.scene, demand, worst):
             return None
-        for pieces, size in self._sets(one.scene, worst):
-            least = 1.0 if worst else self.strength.factor
-            if self.holds(one.scene, demand, pieces, size, worst) >= least:
-                return self._of(one, demand, pieces, size, at_best=not worst, care=care)
-        return None
+        least = 1.0 if worst else self.strength.factor
+        held = ((self.holds(one.scene, demand, *some, worst), *some) for some in self._sets(one.scene, worst))
+        enough = (some for some in held if some[0] >= least)
+        found = max(enough, default=None) if not worst and self.ample(one.scene) else next(enough, None)
+        return None if found is None else self._of(one, demand, *found[1:], at_best=not worst, care=care)
 
     def holds(self, scene: Scene, demand: HoldingDemand, pieces: int, size: float, worst: bool) -> float:
         """Return how many times what is needed so many pieces hold [-].
@@ -325,6 +337,11 @@ class Fixing(Measure, ABC):
         if most <= 0.0:
             return N_("there is no room for it under its base")
         return say.HOLDS_AT_MOST(times=most, asked=self.strength.factor)
+
+
+def on_glass(item: Item) -> bool:
+    """Say whether it stands on what nobody screws into."""
+    return bool(UNSCREWED.intersection(surfaces_in(item.surface_material, of_surface=True)))
 
 
 def dot(size: float) -> float:

@@ -1,5 +1,6 @@
 """Pieces of metal or line that hold an object: pins, clips, clamps, brackets, and ties of monofilament."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from math import cos, inf, pi
@@ -73,9 +74,10 @@ class Clamps(_RoundTheBase):
 
 
 class Ties(Fixing):
-    """Tie it down to all sides by monofilament at about its centre of gravity."""
+    """Tie it down to all sides by monofilament at about its centre of gravity, to eyes in what it stands on."""
 
     name = "ties"
+    screwed = True
     at_foot = False
 
     def reach(self, scene: Scene, pieces: int, size: float, worst: bool) -> Reach:  # noqa: ARG002
@@ -83,6 +85,22 @@ class Ties(Fixing):
         cg = scene.parameters["cg_height"]
         pulls = BEARING * INCLINED * pieces
         return Reach(pulls, pulls * (cg.low if worst else cg.value))
+
+
+FLAT_BACKED = 0.8
+"""Depth over width up to which a thing has a back that a wall is behind: judgement.
+
+A globe and a telescope on its tripod are as deep as wide, and stand in the room."""
+
+CASES = "cabinet"
+"""Class of what stands at a wall whatever its plan."""
+
+_AT_A_WALL = re.compile(
+    r"\b(?:against|at|to|along) (?:\w+ ){0,2}wall|an der Wand|contre le mur|contro (?:la )?(?:parete|il muro)|"
+    r"contra la pared|tegen de muur|壁際",
+    re.IGNORECASE,
+)
+"""What says of a display that a wall is behind it."""
 
 
 class Brackets(Fixing):
@@ -95,6 +113,10 @@ class Brackets(Fixing):
         """Propose them for what stands on the floor: the back of a case, a pedestal or a shelf is no wall."""
         if one.scene.support is Support.FREESTANDING and one.scene.furniture not in (None, Furniture.FLOOR):
             return refused(N_("it does not stand on the floor, at a wall that it could be fixed to"))
+        sides = (one.scene.item.width_m, one.scene.item.depth_m)
+        deep = all(sides) and (sides[1] or 0.0) > FLAT_BACKED * (sides[0] or 0.0)
+        if deep and one.scene.object_class != CASES and not _AT_A_WALL.search(one.scene.item.displayed):
+            return refused(N_("it is about as deep as wide: nothing says that it stands at a wall"))
         return super().propose(one, runner)
 
     def reach(self, scene: Scene, pieces: int, size: float, worst: bool) -> Reach:  # noqa: ARG002

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from pipeline.mitigate.search import ANCHORED
+from pipeline.mitigate.saying import ANCHORED
 from pipeline.planning.efforts import TRADES, EffortSpan
 from pipeline.planning.errands import Advised, Errand
 from pipeline.planning.plan import ErrandPlan

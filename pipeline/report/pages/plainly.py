@@ -8,9 +8,18 @@ from math import ceil, floor, log10
 
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.fixing_rows import fixing_strengths
-from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED
-from pipeline.mitigate.search import ANCHORED, AT_BEST, HEAVIEST, HELD_FIRST, OF_MEAN, SIZED, UPPER_FIRST
+from pipeline.mitigate.saying import (
+    ANCHORED,
+    AT_BEST,
+    ENGINEER,
+    HEAVIEST,
+    HELD_FIRST,
+    OF_MEAN,
+    SAID_AS_IT_IS,
+    SIZED,
+    UPPER_FIRST,
+)
 from pipeline.quantities import G
 from pipeline.records import Finding, Recommendation
 from pipeline.report.by_hand import by_hand
@@ -48,7 +57,7 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     """
     told, numbers = _advised(advice, units)
     told += [said(row.care) for row in fixing_strengths().values() if row.care in advice.sentence]
-    told += [said(one) for one in (TWICE, FOURFOLD) if one in advice.sentence]
+    told += [said(one) for one in SAID_AS_IT_IS if one in advice.sentence]
     if FINISHED in advice.sentence:
         told.append(_("It has paint, gilding or lacquer: ask a conservator first where it may be touched."))
     if OF_MEAN in advice.sentence:
@@ -118,6 +127,8 @@ def _advised(advice: Recommendation, units: Units, of_weight: str = "") -> tuple
         told.append(_("First record what holds it now as installed."))
     if UPPER_FIRST in advice.sentence:
         told.append(_("First fix each upper body to the one that it stands on."))
+    if ENGINEER in advice.sentence:
+        told.append(said(ENGINEER))
     phrase = _PHRASES[advice.measure]() if advice.measure in _PHRASES else ""
     try:
         told.append(phrase % numbers if phrase else f"{said(clean(advice.title))}.")
@@ -154,8 +165,8 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
     "clamps": lambda: _("Clamp its base by %(pieces)s padded clamps: together they must hold %(force)s sideways."),
     "fasten": lambda: _("Fasten its base: the mount must hold %(force)s sideways."),
     "brace": lambda: _(
-        "Have a mount-maker brace it from behind at a height of %(height)s, where the brace must hold %(force)s "
-        "sideways, and fasten its base."
+        "Brace it from behind at a height of %(height)s, where the brace must hold %(force)s sideways, and fasten its "
+        "base."
     ),
     "close_hooks": lambda: _("Close its hooks, so that it cannot jump out of them."),
     "hold": lambda: _("Have a mount-maker hold it on its mount, for %(times)s times its weight."),
