@@ -242,6 +242,8 @@ def _damaged(file: str, problem: BaseException, row: int = 0) -> CollectionError
     where = f", row {row}" if row else ""
     problem = problem.__cause__ or problem  # openpyxl wraps what it meets
     said = (str(problem).splitlines() or [type(problem).__name__])[0][:200]
+    if isinstance(problem, zipfile.BadZipFile | zlib.error | EOFError):
+        said += " (it may be cut off: then export or copy it again)"
     return CollectionError(f"{file}{where}: the workbook is damaged: {said}; {SAVE_AGAIN}")
 
 
