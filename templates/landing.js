@@ -21,11 +21,13 @@
       // A clock that is behind tells no age.
       if (minutes >= 0 && age) { age.textContent = " (" + said(minutes) + ")"; }
     });
-    var good = document.querySelector("time[data-good]");
+    var good = document.querySelector("time[data-good]"), ahead = document.getElementById("ahead");
     if (late && good) {
-      var old = now - Date.parse(good.getAttribute("datetime")) > Number(late.getAttribute("data-hours")) * 3600000;
-      late.hidden = !old;
-      document.body.classList.toggle("late", old);
+      var hours = (now - Date.parse(good.getAttribute("datetime"))) / 3600000, most = Number(late.getAttribute("data-hours"));
+      late.hidden = hours <= most;
+      // So far ahead is no clock that is a little behind.
+      ahead.hidden = hours >= -most;
+      document.body.classList.toggle("late", !(late.hidden && ahead.hidden));
     }
   }
   look();

@@ -251,10 +251,15 @@ def run(
 
 
 @click.command()
+@click.option(
+    "--ahead",
+    is_flag=True,
+    help="Remove the runs that are dated later than now too: the clock was wrong when they were made.",
+)
 @dry_run("Say what would be removed")
 @as_json
 @click.pass_obj
-def prune(options: Options, dry_run: bool, as_json: bool) -> None:
+def prune(options: Options, ahead: bool, dry_run: bool, as_json: bool) -> None:
     """Remove the runs and report folders beyond [retention]; the last good ones always stay.
 
     `kouros run` does so after every good night.
@@ -263,7 +268,7 @@ def prune(options: Options, dry_run: bool, as_json: bool) -> None:
     """
     from pipeline.operations.retention import prune as job
 
-    done = job(options.settings(), dry_run=dry_run)
+    done = job(options.settings(), dry_run=dry_run, ahead=ahead)
     if as_json:
         click.echo(json.dumps(asdict(done), indent=2))
     else:

@@ -31,6 +31,7 @@ from pipeline.collection.guessing.fields import (
     pictures_said,
     tells_display,
 )
+from pipeline.collection.guessing.headings import place_by_heading
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named, unit_in
 from pipeline.collection.guessing.orders import language_of, order_of, unit_of_texts
 from pipeline.collection.guessing.source import (
@@ -186,6 +187,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     able = candidates(columns)
     _add_misspelt(columns, able, told)
     found = _chosen(name, columns, able, told)
+    headed = place_by_heading(found, columns) if "gallery" not in told.choices else ""
+    told.doubts += [headed] * bool(headed)
     naming = named_by(able, found, told.choices)
     described = naming is not None and naming is not found.get("title")
     about = None if naming is None or described or "title" in told.choices else describing(able, naming)

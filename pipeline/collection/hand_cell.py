@@ -19,6 +19,7 @@ LONGEST = 60
 _MARKS = "~≈±"
 _VULGAR = "½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞"
 _AROUND = re.compile(r"^[^\W\d_]+\.?(?=[\s\d])")
+_BEHIND = re.compile(r"(?<=\S)\s+([^\W\d_]+)\.?$")
 _SIGN = re.compile(r"^\s*[-−–]\s*")
 _THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:[,\s]\d{3})+|[1-9]\d{0,2}(?:\.\d{3}){2,}|\d{1,3}(?:[.,\s]\d{3})+[.,]\d+")
 """Figures that may be thousands; one dot and three figures are a decimal of an inch, 2.125."""
@@ -152,6 +153,9 @@ def _without_about(cell: str) -> tuple[str, bool]:
     word = _AROUND.match(plain)
     if word is not None and word[0].rstrip(".").casefold() in _about():
         plain = plain[word.end() :].strip()
+    word = _BEHIND.search(plain)
+    if word is not None and word[1].casefold() in _about():
+        plain = plain[: word.start()]
     if plain.endswith("?"):
         plain = plain.rstrip("? ")
     return plain, plain != cell

@@ -28,6 +28,7 @@ from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.row_audit import RowAudit
 from pipeline.collection.source_audit import audit, judged, taken_away
 from pipeline.collection.sources.delimited import RECORD_LIMIT
+from pipeline.collection.sources.headings import HEADING, heads_or_sums
 from pipeline.collection.sources.rows import NO_FAULTS, Row
 from pipeline.collection.unit_audit import Evidence, Suspicion
 from pipeline.errors import KourosError, fault_words
@@ -275,6 +276,9 @@ class RowReader:
         self._seen: dict[str, int] = {}
         texts = mapping.dimensions
         self._texts = texts and [names.index(source) for source in texts.columns if source in names]
+        placed = any(field == "gallery" for field, *_ in self._columns)
+        beside = {at for _, _, places in self._columns for at in places} | set(self._texts or ())
+        self._beside = {at for at in beside - set(self._key) if names[at] != HEADING} if placed else set()
         self._mapping = mapping
         self._constants: dict[str, str | bool] = {
             f: c.constant == "true" if KINDS.get(f) == "flag" else c.constant
@@ -386,9 +390,10 @@ class RowReader:
             self._reject(
                 row, "object_number", message, "export again with quotation marks around texts of several lines"
             )
-        elif self._is_heading(number, row):
-            message = f"{number!r} has no figure in it and nothing but numbers beside it: a heading, or a sum"
-            self._reject(row, "object_number", message, "leave it out, or give the object a number and a place")
+        elif why := heads_or_sums(row, number, self._beside):
+            self._reject(
+                row, "object_number", f"{number!r} {why}", "leave it out, or give the object a number and a place"
+            )
         elif number in self._seen:
             message = f"object number {number!r} was given in row {self._seen[number]} already; only that row is kept"
             self._reject(row, "object_number", message, "give each object its own number, and export one row an object")
@@ -396,16 +401,6 @@ class RowReader:
             self._seen[number] = row.number
             self.items.append(self._item(row, values, cells))
             self.places.append((row.number, row.line))
-
-    def _is_heading(self, number: str, row: Row) -> bool:
-        """Say whether a row parts the others, such as FURNITURE, or sums them up, such as TOTAL 168.
-
-        It is told by its empty place: where no column tells places, nothing is taken for one.
-        """
-        if any(map(str.isnumeric, number)) or not any(field == "gallery" for field, *_ in self._columns):
-            return False
-        others = {at for _, _, places in self._columns for at in places} | set(self._texts or ())
-        return not any(any(map(str.isalpha, row.cells[at])) for at in others - set(self._key))
 
     def _fill(self, values: dict[str, Any], cells: Cells, texts: Texts, found: list[str]) -> None:
         before, provenance = dict(values), list(cells.provenance)

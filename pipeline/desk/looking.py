@@ -149,7 +149,7 @@ def _advised(facts: ObjectFacts) -> str:
 def _findings(facts: ObjectFacts) -> list[tuple[str, str, str]]:
     """Return model, level and title of what the last run found, for whoever accepts or overrules one of them."""
     found = facts.assessment.findings if facts.assessment else ()
-    return list(dict.fromkeys((f.model, f.level, f.title) for f in found))
+    return list(dict.fromkeys((f.model, f.level, said(f.title)) for f in found))
 
 
 def _recorded(facts: ObjectFacts, run: RunFacts) -> list[tuple[str, str, str]]:
@@ -169,7 +169,13 @@ def _recorded(facts: ObjectFacts, run: RunFacts) -> list[tuple[str, str, str]]:
             else written(one.field, value, "" if one.unit == "-" else one.unit)
         )
         of = notes.get(one.field)
-        out.append((labels()[one.field], shown, "; ".join(filter(None, (of.written, of.note))) if of else ""))
+        out.append(
+            (
+                labels()[one.field],
+                shown,
+                "; ".join(filter(None, (of.written, assumed(of.note, run.units)))) if of else "",
+            )
+        )
     return out
 
 

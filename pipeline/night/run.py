@@ -27,7 +27,7 @@ from pipeline.night.staff import Staff
 from pipeline.night.stocks import keep_stocks
 from pipeline.operations.dry_run import DryRunWarning, rehearsed
 from pipeline.operations.presentation import terms_of
-from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, status
+from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, reports_lost, status
 from pipeline.operations.run_summary import SUMMARY, Stores, Summary, summary_text
 from pipeline.operations.stopping import uninterrupted
 from pipeline.operations.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
@@ -91,6 +91,9 @@ def _run(
         workspace = open_workspace(settings)
         verify_file(workspace.engine)
         shown = last_good(settings)
+        lost = "" if dry_run else reports_lost(settings, len(whole_runs(workspace.engine)))
+        if lost:
+            warnings.warn(f"{lost}; this night's report is put there", DamageWarning, stacklevel=2)
         if shown is not None and not dry_run:
             # A run that was cut off when its report was shown already, and that the database did not hear of.
             mark_finished(workspace.engine, shown.run_id)

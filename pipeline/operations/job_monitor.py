@@ -92,7 +92,11 @@ def _failed(
     )
     if not whole:
         return
-    _beside("the mark on the last report", lambda: mark_failed(settings, problem, message), hide)
+    _beside(
+        "to say it on the landing page, which still shows the night before,",
+        lambda: mark_failed(settings, problem, message),
+        hide,
+    )
     if isinstance(problem, Exception):  # Who stops a run by hand knows of it.
         event: Event = "shrunk" if shrunk else "failed"
         words = f"The run published nothing: {message}" if shrunk else f"The run failed: {message}"
@@ -199,6 +203,6 @@ def _beside(what: str, work: Callable[[], None], hide: Callable[[str], str]) -> 
     try:
         work()
     except Exception as problem:  # noqa: BLE001 - the night itself is over; what is beside it must not change its end
-        said = hide(f"{type(problem).__name__}: {problem}")
+        said = hide(words_of(problem))
         note("beside.failed", level=logging.ERROR, what=what, message=said)
         print(f"kouros: {what} failed: {said}", file=sys.stderr)

@@ -8,16 +8,19 @@ import json
 import os
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from pipeline.operations.presentation import presentation
-from pipeline.operations.run_summary import SUMMARY, Summary, exit_code_of, is_fault, write_aside
+from pipeline.operations.run_summary import FULL, SUMMARY, Summary, exit_code_of, is_fault, write_aside
+from pipeline.quantities import counted
 from pipeline.report import Language, ReportError
 from pipeline.report.pages.landing import MARK, landing_page
 from pipeline.report.pages.news import KEPT
+from pipeline.resources import replacing
 from pipeline.settings import Settings
 
 STATUS = "status.json"
@@ -29,6 +32,12 @@ _RENDERED = re.compile(r"(\d{8}T\d{6}\.\d{3}-\d+)(-\d+)?")
 """A run's id, and which rendering of it a folder holds."""
 
 GOOD, RUNNING, FAILED, INTERRUPTED = "good", "running", "failed", "interrupted"
+
+RESERVE = ".kouros-reserve"
+"""A file in the folder of reports whose room is given up where a full disk would leave a failed night untold."""
+
+RESERVED = 256 << 10
+"""Its bytes: several landing pages."""
 
 NIGHTS = 60
 """Runs that are kept: a few for each of the days that the landing page shows."""
@@ -144,6 +153,7 @@ def mark_good(settings: Settings, summary: Summary) -> None:
     now, began = _now(), _began(settings)
     nights = _with(_nights(status(settings)), GOOD, began, now, summary.run_id)
     _write(settings, Status(GOOD, now, os.getpid(), good, began=began, nights=nights))
+    _reserve(root / RESERVE)
 
 
 def mark_failed(settings: Settings, problem: BaseException, message: str) -> None:
@@ -163,7 +173,24 @@ def mark_failed(settings: Settings, problem: BaseException, message: str) -> Non
     # Who stops a run interrupts it; nothing failed.
     outcome = FAILED if isinstance(problem, Exception) else INTERRUPTED
     nights = _with(_nights(status(settings)), outcome, began, now)
-    _write(settings, Status(FAILED, now, os.getpid(), good, kind, message, code, began, nights, is_fault(problem)))
+    failed = Status(FAILED, now, os.getpid(), good, kind, message, code, began, nights, is_fault(problem))
+    try:
+        _write(settings, failed)
+    except OSError as full:
+        reserve = _root(settings) / RESERVE
+        if full.errno not in FULL or not reserve.is_file():
+            raise
+        reserve.unlink()
+        _write(settings, failed)
+
+
+def _reserve(file: Path) -> None:
+    """Keep some room of the disk for the page that says that a night failed for want of it."""
+    with suppress(OSError):  # Where there is no room for that, nothing is lost yet.
+        if not file.is_file() or file.stat().st_size < RESERVED:
+            with replacing(file) as aside:
+                # A disk that packs what it holds would keep none for noughts.
+                aside.write_bytes(os.urandom(RESERVED))
 
 
 def _nights(known: Status | None) -> list[Mapping[str, str]]:
@@ -217,6 +244,28 @@ def last_good(settings: Settings) -> LastGood | None:
         finished = str(told.get("finished") or (said.finished if said is not None and said.run_id == run else ""))
         return LastGood(run, finished, f"{folder.name}/{LANDING}", told.get("reading"), **_kept(told))
     return said if said is not None and (root / said.report).is_file() else None
+
+
+def reports_lost(settings: Settings, runs: int) -> str:
+    """Say that none of the reports that were made is where they are; "" where one is, or none was made.
+
+    Parameters
+    ----------
+    settings : Settings
+        Of which the folder of reports counts.
+    runs : int
+        Nights of the whole collection that the database knows.
+
+    Returns
+    -------
+    str
+    """
+    if not runs or last_good(settings) is not None:
+        return ""
+    return (
+        f"{_root(settings)} holds no report, though {counted(runs, 'night')} of the whole collection ended well: see "
+        "whether its drive is mounted, or [report] folder is another now"
+    )
 
 
 def _said(root: Path) -> LastGood | None:

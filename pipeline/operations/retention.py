@@ -42,7 +42,7 @@ class Pruned:
     kept: tuple[str, ...] = ()
 
 
-def prune(settings: Settings, *, dry_run: bool = False) -> Pruned:
+def prune(settings: Settings, *, dry_run: bool = False, ahead: bool = False) -> Pruned:
     """Remove the runs and report folders beyond [retention].
 
     The last good run, its report and what `latest` points at always stay, and so does every folder that is not wholly
@@ -54,6 +54,8 @@ def prune(settings: Settings, *, dry_run: bool = False) -> Pruned:
         Of which `[retention]` counts.
     dry_run : bool
         Remove nothing, and say what would be.
+    ahead : bool
+        Remove what is dated later than now too, of a clock that was wrong, where another good run is shown.
 
     Returns
     -------
@@ -66,13 +68,16 @@ def prune(settings: Settings, *, dry_run: bool = False) -> Pruned:
         Where a run is at work.
     """
     limits = settings.retention
-    if not (limits.runs or limits.reports or limits.days):
+    if not (limits.runs or limits.reports or limits.days or ahead):
         return Pruned()
     with rehearsed(settings, dry_run) as lent, locked(lent):
         workspace = open_workspace(lent)
         sacred = _sacred(workspace)
-        runs = _old_runs(list_runs(workspace.engine), sacred, limits)
-        folders, kept = _old_reports(workspace.reports, sacred, limits)
+        there = list_runs(workspace.engine)
+        wrong = _ahead(there, workspace.settings) if ahead else frozenset()
+        runs = _old_runs([run for run in there if run.run_id not in wrong], sacred, limits)
+        runs += [run.run_id for run in there if run.run_id in wrong]
+        folders, kept = _old_reports(workspace.reports, sacred - wrong, limits, wrong)
         if not dry_run:
             # The folders first: where the disk is full, the database can only then write what it removes.
             for folder in folders:
@@ -90,6 +95,15 @@ def _sacred(workspace: Workspace) -> frozenset[str]:
     )
 
 
+def _ahead(runs: Sequence[RunSummary], settings: Settings) -> frozenset[str]:
+    """Return the runs that are dated later than now, but for the one whose report is shown."""
+    good = last_good(settings)
+    now = datetime.now(UTC)
+    if good is None or any(run.run_id == good.run_id and (_when(run.started) or now) > now for run in runs):
+        return frozenset()
+    return frozenset(run.run_id for run in runs if (_when(run.started) or now) > now)
+
+
 def _old_runs(runs: Sequence[RunSummary], sacred: frozenset[str], limits: Retention) -> list[str]:
     finished = [run for run in runs if run.status == FINISHED]
     good = max((run.started for run in finished if run.run_id in sacred), default="")
@@ -105,13 +119,17 @@ def _old_runs(runs: Sequence[RunSummary], sacred: frozenset[str], limits: Retent
     return [run.run_id for run in reversed(runs) if run.run_id in old]
 
 
-def _old_reports(root: Path, sacred: frozenset[str], limits: Retention) -> tuple[list[Path], list[str]]:
+def _old_reports(
+    root: Path, sacred: frozenset[str], limits: Retention, wrong: frozenset[str]
+) -> tuple[list[Path], list[str]]:
     found = [(match, folder) for folder in _inside(root) if (match := _REPORT.fullmatch(folder.name))]
     found.sort(key=lambda one: one[1].name, reverse=True)
     old, kept = [], []
     for place, (match, folder) in enumerate(found):
         when = _when(f"{match['day']}T{match['time']}")
-        if match["run"] in sacred or not _beyond(place, limits.reports, when, limits.days):
+        if match["run"] not in wrong and (
+            match["run"] in sacred or not _beyond(place, limits.reports, when, limits.days)
+        ):
             continue
         strange = _strange(folder)
         if strange:

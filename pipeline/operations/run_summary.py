@@ -20,7 +20,22 @@ SUMMARY = "summary.json"
 LISTED = 1000
 """Changes of each kind that the file lists; `kouros diff --json` has all."""
 
-_FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
+FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
+"""Errors of a disk, or of somebody's share of one, that is full."""
+
+_AWAY = ("ESTALE", "ENOTCONN", "ENODEV", "ENXIO", "EIO", "EHOSTDOWN", "EHOSTUNREACH", "ETIMEDOUT", "EREMOTEIO")
+_REMEDIES = {
+    errno.EROFS: "the disk of {file} can only be read now, as is done to a disk that failed: see to the disk, have "
+    "it mounted for writing, then run again",
+    errno.EACCES: "Kouros may not use {file}: give its account the right to, then run again",
+    errno.EPERM: "Kouros may not use {file}: give its account the right to, then run again",
+} | {
+    getattr(errno, name): "the disk or share of {file} does not answer: see whether it is there and mounted, then run "
+    "again"
+    for name in _AWAY
+    if hasattr(errno, name)
+}
+"""Errors of disks, and what people can do about them."""
 
 _KINDS = ("objects", "added", "removed", "moved", "inputs", "verdicts", "motions", "decisions", "settings", "versions")
 
@@ -223,9 +238,11 @@ def words_of(problem: BaseException) -> str:
         return f"{FAULT}: {fault_words(problem)}; {hint}"
     if isinstance(problem, KourosError) or not isinstance(problem, OSError):
         return str(problem)
-    if problem.errno in _FULL:
-        # Of a link and of a renaming the second is what was to be made.
-        file = problem.filename2 or problem.filename
+    # Of a link and of a renaming the second is what was to be made.
+    file = problem.filename2 or problem.filename
+    if problem.errno in _REMEDIES and file is not None:
+        return f"{_REMEDIES[problem.errno].format(file=file)} ({problem.strerror})"
+    if problem.errno in FULL:
         where = "the disk" if file is None else f"the disk of {file}"
         return f"no space is left on {where}: make room (`kouros prune` removes old reports), then run again"
     return f"{problem} ({type(problem).__name__}; {hint})"

@@ -178,10 +178,13 @@ def moment(text: str) -> str:
     tag = _TAG.get()
     if _locale(tag) is None or tag.partition("-")[0] == "en":
         return text if len(text) == _DAY else f"{when:%Y-%m-%d %H:%M}"
-    from babel.dates import format_date
+    from babel.dates import format_date, get_datetime_format
 
     day = str(format_date(when, "medium", locale=_locale(tag)))
-    return day if len(text) == _DAY else f"{day}, {when:%H:%M}"
+    if len(text) == _DAY:
+        return day
+    # "{1}, {0}" in most languages, "{1} {0}" in Japanese.
+    return str(get_datetime_format("medium", locale=_locale(tag))).replace("{1}", day).replace("{0}", f"{when:%H:%M}")
 
 
 @lru_cache

@@ -10,10 +10,11 @@ from pathlib import Path
 from pipeline.extensions import ExtensionWarning, extension_versions
 from pipeline.models import MODELS
 from pipeline.operations.hooks import look, named
-from pipeline.operations.report_status import FAILED, GOOD, RUNNING, last_good, status
+from pipeline.operations.report_status import FAILED, GOOD, RUNNING, last_good, reports_lost, status
 from pipeline.operations.workspace import LOCK, LockedError, Workspace, locked
 from pipeline.quantities import counted
 from pipeline.settings import Settings
+from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import list_runs
 
 SPACE = 1_000_000_000
@@ -48,7 +49,7 @@ def looks(settings: Settings, workspace: Workspace | None) -> Iterator[Look]:
     yield "kernels", _kernels
     yield "extensions", _extensions
     yield "lock", lambda: _lock(settings)
-    yield "last report", lambda: _last_report(settings)
+    yield "last report", lambda: _last_report(settings, workspace)
     yield "retention", lambda: _retention(settings)
     yield "hooks", lambda: _hooks(settings)
     yield "log", lambda: _log(settings)
@@ -130,9 +131,12 @@ def _lock(settings: Settings) -> Found:
         return "warning", f"{problem}{holder}"
 
 
-def _last_report(settings: Settings) -> Found:
+def _last_report(settings: Settings, workspace: Workspace | None) -> Found:
     now = status(settings)
     good = last_good(settings)
+    lost = "" if workspace is None else reports_lost(settings, len(whole_runs(workspace.engine)))
+    if lost:
+        return "warning", lost
     if good is None:
         said = f"; the last attempt failed: {now.message}" if now is not None and now.state == FAILED else ""
         return "warning", f"there is no good report yet{said}; `kouros run` makes one"
@@ -145,6 +149,8 @@ def _last_report(settings: Settings) -> Found:
         age = (datetime.now(UTC) - datetime.fromisoformat(good.finished)).total_seconds() / 3600.0
     except (ValueError, TypeError):
         return "ok", text
+    if age < 0.0:
+        return "warning", f"{text}, later than now: a clock was wrong then, or is now"
     if age > OVERDUE_H:
         return "warning", f"{text}, {age / 24.0:.1f} days ago; see whether the nightly run is still started"
     return "ok", f"{text}, {age:.1f} hours ago" + ("" if now is None or now.state == GOOD else "; a run is at work")
@@ -185,5 +191,6 @@ def _clock(workspace: Workspace) -> Found:
     now = datetime.now(UTC)
     runs = list_runs(workspace.engine)
     if runs and datetime.fromisoformat(runs[0].started) > now:
-        return "wrong", f"the last run is of {runs[0].started}, later than now ({now.isoformat()}); set the clock"
+        told = f"the last run is of {runs[0].started}, later than now ({now.isoformat()})"
+        return "wrong", f"{told}; set the clock, or where it is right now: run, then `kouros prune --ahead`"
     return "ok", now.isoformat(timespec="seconds")

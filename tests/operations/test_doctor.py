@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
@@ -9,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from pipeline.errors import DamageWarning
 from pipeline.kernels import user_cache
 from pipeline.operations.report_status import mark_failed, mark_running
-from pipeline.operations.run_summary import SUMMARY
+from pipeline.operations.run_summary import SUMMARY, words_of
 from pipeline.operations.workspace import locked
 from pipeline.report import publish
 from pipeline.settings import Settings, load_settings
@@ -20,6 +22,8 @@ from pipeline.tools.doctor_checks import OVERDUE_H
 from pipeline.tools.initialise import initialise
 from tests.museum import edit
 from tests.night.changing import FRICTION
+
+from .conftest import within
 
 Museum = Callable[..., Path]
 
@@ -75,6 +79,13 @@ def test_a_night_that_is_overdue_stale_or_interrupted(museum: Museum) -> None:
         looked = found(folder)
     assert "a run is at work" in looked["last report"].message
     assert (looked["lock"].state, f"process {os.getpid()}" in looked["lock"].message) == ("warning", True)
+
+
+def test_a_night_that_is_dated_later_than_now(museum: Museum) -> None:
+    folder = museum()
+    report(load_settings(folder / "kouros.toml"), -48.0)
+    told = found(folder)["last report"]
+    assert (told.state, "later than now: a clock was wrong then" in told.message) == ("warning", True)
 
 
 def test_tables_of_the_museums_own(museum: Museum) -> None:
@@ -159,3 +170,22 @@ def test_compiled_code_is_not_loaded_from_a_folder_that_others_may_write(
     assert last.parent == temporary
     assert last.name.startswith("kouros-kernels-")
     assert last.stat().st_mode & 0o077 == 0
+
+
+def test_a_folder_of_reports_that_is_empty_after_good_nights_is_told(museum: Museum) -> None:
+    """As the place of a drive is where the drive is not mounted."""
+    folder = museum()
+    assert within(folder, "run").returncode == 0
+    (folder / "reports").rename(folder / "elsewhere")
+    assert "holds no report, though 1 night" in within(folder, "check").stdout
+    with pytest.warns(DamageWarning, match="holds no report, though 1 night"):
+        assert within(folder, "run").returncode == 0
+    assert "holds no report" not in within(folder, "check").stdout
+
+
+@pytest.mark.parametrize("number", [errno.EROFS, errno.EACCES, errno.ESTALE, errno.EIO])
+def test_what_a_disk_does_is_told_with_what_mends_it(number: int) -> None:
+    said = words_of(OSError(number, os.strerror(number), "/srv/reports/index.html"))
+    assert "/srv/reports/index.html" in said
+    assert "then run again" in said
+    assert "--debug" not in said

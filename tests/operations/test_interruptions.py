@@ -6,6 +6,7 @@ report must be whole, last night's or tonight's, and the run that is resumed mus
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import shutil
@@ -103,6 +104,12 @@ def test_a_full_disk_at_any_stage(nights: Nights, small_disk: Path, room: int) -
         assert "space" in done.stderr or "full" in done.stderr, done.stderr
         assert "Traceback" not in done.stderr
         assert not whole(folder, nights)
+        # The room that a good night kept for that lets the page say it, however full the disk is.
+        said = json.loads((folder / "reports" / "status.json").read_text(encoding="utf-8"))
+        assert (said["state"], said["nights"][-1]["state"]) == ("failed", "failed")
+        page = (folder / "reports" / "index.html").read_text(encoding="utf-8")
+        assert "The last night failed" in page
+        assert "kouros prune" in page
     (small_disk / "filling").unlink()
     resumes(folder, nights)
 

@@ -6,12 +6,14 @@ import email
 import email.policy
 import json
 from collections.abc import Callable
+from datetime import UTC
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pipeline.operations.report_status import NIGHTS, mark_failed, mark_running, status
+from pipeline.report.pages.landing import days
 from pipeline.settings import SettingsError, load_settings
 from tests.museum import ROWS, edit
 
@@ -55,6 +57,17 @@ def test_what_ended_each_night_is_kept_in_order(museum: Callable[..., Path]) -> 
     for words in (["run", "--object", "2"], ["run", "--dry-run"], ["report"]):
         assert within(folder, *words).returncode == 0
     assert standing(folder)["nights"] == said["nights"]
+
+
+def test_a_night_of_a_clock_that_was_ahead_hides_no_later_one() -> None:
+    """The row ends with the day of the last run, and not a year later, where nothing but one run would stand."""
+    nights = [
+        {"began": f"{day}T02:00:00+00:00", "ended": "", "state": state, "run_id": ""}
+        for day, state in (("2026-11-25", "good"), ("2027-11-26", "good"), ("2026-11-27", "failed"))
+    ]
+    assert [(one.day, one.state) for one in days(nights, UTC)] == [
+        ("2026-11-25", "good"), ("2026-11-26", ""), ("2026-11-27", "failed"),
+    ]  # fmt: skip
 
 
 def test_no_more_are_kept_than_are_shown_of_a_fortnight(museum: Callable[..., Path]) -> None:

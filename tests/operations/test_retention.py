@@ -227,3 +227,15 @@ def test_at_random_the_last_good_run_always_stays(tmp_path: Path) -> None:
         if good:
             assert good[-1] in runs(workspace)
             assert (workspace.reports / "latest" / "index.html").read_text(encoding="utf-8") == good[-1]
+
+
+def test_what_a_wrong_clock_dated_later_than_now_goes_only_when_asked(tmp_path: Path) -> None:
+    """Asked by the name of it, and where a good report of another night is shown; a clock set back loses nothing."""
+    workspace = museum(tmp_path, Retention())
+    before, wrong = night(workspace, 2), night(workspace, -8760)
+    assert prune(workspace.settings, ahead=True) == Pruned()
+    good = night(workspace, 1)
+    assert prune(workspace.settings) == Pruned()
+    assert prune(workspace.settings, ahead=True, dry_run=True) == Pruned((wrong,), (wrong,))
+    assert prune(workspace.settings, ahead=True) == Pruned((wrong,), (wrong,))
+    assert (runs(workspace), folders(workspace)) == ([good, before], [before, good])

@@ -17,6 +17,7 @@ from pipeline.collection.guessing.names import (
     ColumnMeaning,
     bare,
     complements,
+    is_code,
     is_length,
     named,
     tells_material,
@@ -234,6 +235,7 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
                     pair[1].says_one,
                     pair[0].internal,
                     pair[0].rank,
+                    is_code(pair[1].name),
                 ),
             )
         ]

@@ -7,7 +7,12 @@ from collections.abc import Sequence
 from pipeline.collection.guessing.columns import NUMBER, Column, candidates
 from pipeline.collection.guessing.names import plain
 from pipeline.collection.sources.base import LongForm
-from pipeline.collection.sources.measurement_terms import kind_of, part_of, unit_of
+from pipeline.collection.sources.measurement_terms import kind_of, part_of, plain_word, unit_of
+
+_LETTERS = frozenset(("h", "b", "l", "t", "d", "w", "p", "a", "dm", "dia", "diam", "ø", "g", "gew", "wt", "kg"))
+"""Letters by which kinds are told, in any language; the words beside them say which is which."""
+
+_MOST_LETTERS = 12
 
 _SEPARATORS = ("$", "|", ";", "\n")
 """What exports put between several values of one field in a cell."""
@@ -40,7 +45,7 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
     within = _within(columns)
     if within is not None:
         return within
-    types = [c for c in columns if c.kinds >= 0.6 and len(c.distinct) > 1]
+    types = [c for c in columns if (c.kinds >= 0.6 or _lettered(c)) and len(c.distinct) > 1]
     numbers = [c for c in candidates(columns).get("object_number", ()) if c.filled] or [
         c for c in columns if c.filled and c not in types and not c.units
     ][:1]
@@ -67,6 +72,12 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
         unit=None if unit is None else unit.name,
         part=None if part is None else part.name,
     )
+
+
+def _lettered(column: Column) -> bool:
+    """Whether a column names kinds by letters, of which one is known by itself: B and T beside H."""
+    said = {plain_word(text) for text in column.distinct[:_MOST_LETTERS]}
+    return len(column.distinct) <= _MOST_LETTERS and said <= _LETTERS and any(map(kind_of, said))
 
 
 def _within(columns: Sequence[Column]) -> LongForm | None:

@@ -101,6 +101,9 @@ _ABOUT = frozenset(
 """Words before the name of a side that say only that it is one."""
 
 
+_OF_CODES = frozenset({"code", "id", "key", "uri", "url", "no", "since", "date", "from", "until"})
+"""Names within a name of what is less than a name."""
+
 _OF_KEYS = frozenset({"id", "ids", "key", "uri", "url"})
 """Words that end the name of a column of keys or addresses."""
 
@@ -279,7 +282,10 @@ def named(name: str) -> ColumnMeaning | None:
         return None
     forms = [*_forms(name)]
     forms += [form.removeprefix(_DISPLAYED) for form in forms if form.startswith(_DISPLAYED)]
-    above = set(map(plain, path_of(name)[:-1]))
+    path = path_of(name)
+    above = set(map(plain, path[:-1]))
+    if len(path) > 1 and _says(path[-1]) in ("title", "object_name") and _says(path[-2]) == "gallery":
+        return _names()[plain(path[-2])]  # what a place is called, and no thing: "Raum.bezeichnung"
     for form in forms:
         found = _names().get(form)
         # What stands below a description is none: "Description.Material.Keyword".
@@ -292,6 +298,12 @@ def named(name: str) -> ColumnMeaning | None:
     if plain(name) in CALLED:
         return ColumnMeaning("title", _WEAK)
     return _within(name)
+
+
+def outright(name: str) -> bool:
+    """Whether the whole of a column's name is that of a field, and not a word within it alone: "Akt. Standort"."""
+    what = named(name)
+    return what is not None and what.rank < _WEAK
 
 
 def tells_material(name: str) -> bool:
@@ -328,6 +340,12 @@ def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
     near = [one for one in known if one[0] == form[0] and sorted(one) == sorted(form)]
     near += get_close_matches(form, known, n=1, cutoff=_ALMOST)
     return (_names()[near[0]], near[0]) if near else None
+
+
+def is_code(name: str) -> bool:
+    """Whether a column within others is of codes or dates: "location.code" beside "location.name"."""
+    path = path_of(name)
+    return len(path) > 1 and plain(path[-1]) in _OF_CODES
 
 
 def same_stem(word: str, table: str) -> bool:

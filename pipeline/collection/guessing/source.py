@@ -14,6 +14,7 @@ from typing import Any, BinaryIO, cast
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, columns_of
 from pipeline.collection.guessing.fields import Question
+from pipeline.collection.guessing.headings import has_headings
 from pipeline.collection.guessing.long_rows import long_form_of
 from pipeline.collection.guessing.text_files import LOOKED_AT, delimiter_of, encoding_of, first_lines, table_head
 from pipeline.collection.limits import STANDARD
@@ -22,6 +23,7 @@ from pipeline.collection.mapping import load_mapping
 from pipeline.collection.opening import open_source
 from pipeline.collection.sources.files import head_of, unpacked, unreadable
 from pipeline.collection.sources.folders import Folder
+from pipeline.collection.sources.headings import HEADING, under_headings
 from pipeline.collection.sources.json_objects import list_in
 from pipeline.collection.sources.json_records import files_of as json_files
 from pipeline.collection.sources.json_records import read_values
@@ -35,6 +37,9 @@ from pipeline.collection.sources.xml_records import XML_FILES
 
 READ = 2000
 """Rows that the guess is made from."""
+
+_HEADED = ("csv", "tsv", "xlsx")
+"""Formats of tables that people write, with headings between their rows perhaps."""
 
 SNIFFED = 1 << 18
 """Bytes from which encoding and delimiter are told."""
@@ -276,15 +281,15 @@ def workbook(path: Path, sheet: str | None, told: GuessNotes) -> tuple[dict[str,
     return source, columns
 
 
-def columns_in(path: Path, source: Mapping[str, Any]) -> list[Column]:
+def columns_in(path: Path, source: dict[str, Any]) -> list[Column]:
     """Return the columns of a file that is read in some way.
 
     Parameters
     ----------
     path : Path
         The file.
-    source : mapping
-        The section [source].
+    source : dict
+        The section [source]; what its rows show of it is added.
 
     Returns
     -------
@@ -297,7 +302,13 @@ def columns_in(path: Path, source: Mapping[str, Any]) -> list[Column]:
         For a file without a row that can be used.
     """
     with open_source(path, _plain_mapping(source)) as opened:
-        return _filled(path.name, opened.rows)
+        if source["format"] not in _HEADED:
+            return _filled(path.name, opened.rows)
+        some = list(islice(opened.rows, READ + 1))
+    if has_headings(some[1:]) and HEADING not in map(str.strip, some[0].cells):
+        source["headings"] = True
+        some = list(under_headings(iter(some), path.name))
+    return _filled(path.name, iter(some))
 
 
 def _plain_mapping(source: Mapping[str, Any]) -> Proposal:

@@ -268,6 +268,11 @@ def _open(path: Path, most: int) -> BufferedReader:
                 f"{path}: {state.st_size:,} bytes, more than {most:,}; export fewer columns or objects, "
                 "or raise [limits] megabytes"
             )
+        if not state.st_size:
+            raise CollectionError(
+                f"{path}: empty (0 bytes): the export has failed, or is not written yet; export it again, or run again "
+                "when it is there"
+            )
         return path.open("rb")
     except OSError as problem:
         raise unreadable(path, problem) from problem

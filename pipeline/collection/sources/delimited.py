@@ -282,6 +282,11 @@ class HeadedSettings(SourceSettings):
     header_rows: int | None = Field(
         default=None, ge=1, le=4, description="How many rows name the columns together, as where cells are merged; 1."
     )
+    headings: bool = Field(
+        default=False,
+        description="Rows that hold one text alone, such as a room's name across a list, head the rows below them: "
+        'the column "heading" has it for each of these.',
+    )
 
 
 class CsvSettings(HeadedSettings):

@@ -9,13 +9,16 @@ A name within a name is a column by its path, `MuseumLocation.DisplayCurrentLoca
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.hand_cell import LONGEST, of_hand
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
 from pipeline.collection.sources.measurements import NUMBER, OF_MEASUREMENTS, Measurements, joined
 from pipeline.collection.sources.rows import Row, as_text
+from pipeline.errors import InputError
 
 MOST_COLUMNS = 2000
 """Names of one museum's objects."""
@@ -28,6 +31,8 @@ _VALUES = ("value", "dimension", "amount", "number", "size", "val", "reading", "
 _UNITS = ("unit", "units", "unit_name", "unitName", "unitname", "uom")
 _PARTS = ("part", "element", "element_name", "elementName", "extent", "aspect")
 # Words that a longer name ends in, PhyType beside PhyValue and PhyUnit: "name" and "number" end too many.
+_TEXTS = ("value", "number", "text", "content")
+_KIND_LENGTH = 40
 _LAST = {
     _KINDS: frozenset(("type", "kind", "dimension")),
     _VALUES: frozenset(("value", "amount", "size", "val", "reading")),
@@ -116,14 +121,16 @@ def flat(record: Mapping[str, Any], unit: str | None = None) -> tuple[dict[str, 
             if not _measured(path, value):
                 for one in value:
                     take(path, one)
+                for kind, text in _of_kinds(value):
+                    put(f"{path}.{kind}", text)
         elif isinstance(value, list):
             put(path, joined(as_text(one) for one in value))
         else:
             put(path, as_text(value))
 
     def _measured(path: str, value: list[Any]) -> bool:
-        said = [one for one in map(_measurement, value) if one is not None]
-        if len(said) < len(value) or not any(kind_of(one[0]) for one in said):
+        said = measurements_in(value)
+        if said is None:
             return False
         measured = Measurements(unit)
         for one in said:
@@ -139,6 +146,25 @@ def flat(record: Mapping[str, Any], unit: str | None = None) -> tuple[dict[str, 
     return cells, faults
 
 
+def measurements_in(entries: Sequence[Any]) -> list[tuple[str, str, str, str]] | None:
+    """Return kind, number, unit and part of each entry of a list; None where they are not all measurements.
+
+    What says the kind of one says it of all: "H" is known by itself, "B" and "T" are beside it.
+
+    Parameters
+    ----------
+    entries : sequence of object
+        Such as `[{"art": "H", "value": "58", "unit": "cm"}, {"art": "B", "value": "40", "unit": "cm"}]`.
+
+    Returns
+    -------
+    list of (str, str, str, str) or None
+    """
+    known = next((one for one in map(_kind_within, entries) if one), None)
+    said = [] if known is None else [one for one in (_measurement(one, known) for one in entries) if one is not None]
+    return said if said and len(said) == len(entries) else None
+
+
 def is_measurement(value: Any) -> bool:
     """Say whether an entry tells one measurement of a kind that is known.
 
@@ -151,22 +177,40 @@ def is_measurement(value: Any) -> bool:
     -------
     bool
     """
-    said = _measurement(value)
-    return said is not None and kind_of(said[0]) is not None
+    return _kind_within(value) is not None
 
 
-def _measurement(value: Any) -> tuple[str, str, str, str] | None:
-    """Return kind, number, unit and part of what one entry of a list says; None where it says no measurement."""
-    if not isinstance(value, dict):
+def _kind_within(value: Any) -> str | None:
+    """Return the name under which an entry that has a number says a kind of measurement that is known."""
+    if not isinstance(value, dict) or (number := _number_within(value)) is None:
         return None
-    number = next((name for name in _named(value, _VALUES) if _amount(_text(value[name]))), None)
     able = [name for name in value if name != number and _text(value[name])]
     # In any language: what is a kind of measurement by what it says.
-    kind = next(
+    return next(
         (name for name in [*_named(value, _KINDS), *able] if name in able and kind_of(_text(value[name]))), None
     )
+
+
+def _number_within(value: Mapping[str, Any]) -> str | None:
+    """Return the name under which an entry says a number; in words that are not known, the only one beside a unit."""
+    named = next((name for name in _named(value, _VALUES) if _amount(_text(value[name]))), None)
+    if named is not None:
+        return named
+    able = [name for name in value if name not in _SPOKEN and _amount(_text(value[name]))]
+    return able[0] if len(able) == 1 and any(unit_of(_text(one)) for one in value.values()) else None
+
+
+def _measurement(value: Any, known: str) -> tuple[str, str, str, str] | None:
+    """Return kind, number, unit and part of what one entry of a list says; None where it says no measurement.
+
+    known : the name under which another entry says its kind
+    """
+    if not isinstance(value, dict) or (number := _number_within(value)) is None:
+        return None
+    able = [name for name in value if name != number and _text(value[name])]
+    kind = _kind_within(value) or (known if known in able else None)
     kind = kind or next((name for name in _named(value, _KINDS) if name in able), None)
-    if number is None or kind is None:
+    if kind is None:
         return None
     amount, within = _amount(_text(value[number])) or ("", "")
     units = [*_named(value, _UNITS), *(name for name in able if name not in _SPOKEN and unit_of(_text(value[name])))]
@@ -175,6 +219,18 @@ def _measurement(value: Any) -> tuple[str, str, str, str] | None:
         for those in (units, _named(value, _PARTS))
     )
     return _text(value[kind]), amount, unit or within, part
+
+
+def _of_kinds(entries: Sequence[Any]) -> Iterator[tuple[str, str]]:
+    """Yield kind and text of each entry of a list of several, all of which say both: numbers, old and new, say."""
+    told = []
+    for one in entries if len(entries) > 1 else ():
+        kind, text = (next((name for name in names if isinstance(one, dict) and _text(one.get(name, ""))), None)
+                      for names in (_KINDS[:2], _TEXTS))  # fmt: skip
+        if kind is None or text is None or not 0 < len(said := _text(one[kind]).strip()) <= _KIND_LENGTH:
+            return
+        told.append((said, _text(one[text])))
+    yield from told
 
 
 def _named(value: Mapping[str, Any], names: tuple[str, ...]) -> list[str]:
@@ -194,7 +250,17 @@ def _amount(text: str) -> tuple[str, str] | None:
     if NUMBER.fullmatch(text.strip()):
         return text.strip(), ""
     told = _WITH_UNIT.fullmatch(text.strip())
-    return (told[1], told[2]) if told and unit_of(told[2]) else None
+    if told:
+        return (told[1], told[2]) if unit_of(told[2]) else None
+    return (text.strip(), "") if _is_written(text) else None
+
+
+def _is_written(text: str) -> bool:
+    """Whether a text is one length or mass as people write it, with its unit: 7 ft 2 in, 19 1/2 in."""
+    for unit in ("m", "kg") if len(text) <= LONGEST and any(map(str.isdigit, text)) else ():
+        with suppress(InputError):
+            return of_hand(text, unit).named
+    return False
 
 
 def _text(value: Any) -> str:

@@ -20,6 +20,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Name, Request
 from pipeline.collection.sources.delimited import HeadedSettings
 from pipeline.collection.sources.files import stream_of
+from pipeline.collection.sources.headings import MERGED
 from pipeline.collection.sources.heads import joined_heads
 from pipeline.collection.sources.opendocument import OpenBook, OpenCell, OpenPage
 from pipeline.collection.sources.rows import Row, TypedNumber, as_text
@@ -241,6 +242,8 @@ def _damaged(file: str, problem: BaseException, row: int = 0) -> CollectionError
     where = f", row {row}" if row else ""
     problem = problem.__cause__ or problem  # openpyxl wraps what it meets
     said = (str(problem).splitlines() or [type(problem).__name__])[0][:200]
+    if isinstance(problem, zipfile.BadZipFile | zlib.error | EOFError):
+        said += " (it may be cut off: then export or copy it again)"
     return CollectionError(f"{file}{where}: the workbook is damaged: {said}; {SAVE_AGAIN}")
 
 
@@ -432,7 +435,7 @@ def _formula(what: str) -> tuple[str, str]:
 
 def _hidden(where: str) -> tuple[str, str]:
     return (
-        f"is one of the merged cells {where}",
+        f"{MERGED} {where}",
         "unmerge them, and fill in every row and column",
     )
 

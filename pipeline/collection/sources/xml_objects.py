@@ -344,8 +344,10 @@ def _value(element: Any) -> Any:
     if text or not (children or told):
         return _texted(text, told)
     listed = not told
-    for child in children:
-        _put(told, _called(child), _value(child), child)
+    said = [(_called(child), _value(child), child) for child in children]
+    sized = {name for name, value, _ in said if is_measurement(value)}
+    for name, value, child in said:
+        _put(told, name, _entry(value, child) if name in sized else value, child)
     # <arr name="materials"><str>wood</str><str>gold</str></arr>: a list, whose entries have no name.
     (only,) = told if listed and len(told) == 1 else ("",)
     return told[only] if only.casefold() in _UNTOLD else told
@@ -360,6 +362,14 @@ def _texted(text: str, told: dict[str, Any]) -> Any:
         unit = next((one for one in told.values() if unit_of(one)), "")
         return f"{text} {unit}".strip()
     return text
+
+
+def _entry(value: Any, element: Any) -> Any:
+    """Return a number beside measurements of the same name as an entry like theirs, whatever kind it says."""
+    attributes = _attributes(element)
+    return (
+        attributes | {"value": "".join(element.itertext()).strip()} if attributes and isinstance(value, str) else value
+    )
 
 
 def _put(into: dict[str, Any], name: str, value: Any, element: Any) -> None:

@@ -312,7 +312,7 @@ def _effort(title: str, effort: Mapping[str, int]) -> EffortView:
 def _note(text: str, units: Units) -> str:
     """Say what a run noted of its levels and floors: a phrase as a whole, or clauses."""
     whole = said(text)
-    return whole if whole != text else f"{assumed(text.removesuffix('.'), units)}."
+    return whole if whole != text else f"{assumed(text.removesuffix('.'), units)}{_('.')}"
 
 
 def _total(counts: Iterable[StateCounts]) -> StateCounts:

@@ -128,16 +128,18 @@ def _news(kept: Mapping[str, Any] | None, zone: tzinfo) -> tuple[NewsView, str] 
 def days(nights: Sequence[Mapping[str, str]], zone: tzinfo) -> tuple[DayView, ...]:
     """Return what became of the last days that had a run, and of the days between them, the oldest first.
 
-    A run belongs to the day on which it began, where the museum is.
+    A run belongs to the day on which it began, where the museum is. Days behind that of the last run are of a clock
+    that was wrong.
     """
     by_day: dict[date, list[str]] = {}
+    last = date.min
     for night in nights:
         began = _read(night.get("began", ""))
         if began is not None and night.get("state") in ("good", "failed", "interrupted"):
-            by_day.setdefault(began.astimezone(zone).date(), []).append(night["state"])
+            last = began.astimezone(zone).date()
+            by_day.setdefault(last, []).append(night["state"])
     if not by_day:
         return ()
-    last = max(by_day)
     first = max(min(by_day), last - timedelta(DAYS - 1))
     found = []
     for at in range((last - first).days + 1):

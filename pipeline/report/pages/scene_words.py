@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from pipeline.records import Anchorage, Furniture, Mount, Origin, Scene, Support
 from pipeline.report.assumed import reason_words
-from pipeline.report.language import _, said
+from pipeline.report.language import _, local, said
 from pipeline.report.text import clean, count, words
 
 _POSSIBLE = 0.05
@@ -100,7 +100,7 @@ def taken_words(scene: Scene) -> str:
     sure = dict(scene.chances).get(scene.object_class)
     if sure is None:
         return ""
-    told = _("taken for: {one} ({sure})").format(one=words(clean(scene.object_class)), sure=f"{sure:.2f}")
+    told = _("taken for: {one} ({sure})").format(one=words(clean(scene.object_class)), sure=local(f"{sure:.2f}"))
     others = [pair for pair in scene.chances if pair[0] != scene.object_class and pair[1] >= _POSSIBLE]
     if not others:
         return told

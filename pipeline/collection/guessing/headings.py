@@ -1,0 +1,73 @@
+"""Lists with headings between their rows: whether they name places, and what then tells where a thing is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pipeline.collection.display_words import says_away
+from pipeline.collection.guessing.columns import Column
+from pipeline.collection.guessing.fields import tells_display
+from pipeline.collection.guessing.names import named, outright
+from pipeline.collection.sources.headings import HEADING, is_heading
+from pipeline.collection.sources.rows import Row
+
+FEWEST = 2
+"""Headings from which a list is taken to have some; one alone may be a remark."""
+
+_MOST = 0.5
+"""Share of the rows that headings are at most."""
+
+
+def has_headings(rows: Sequence[Row]) -> bool:
+    """Say whether rows that hold one text alone head those below them, and name places.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Of a table, without its header.
+
+    Returns
+    -------
+    bool
+    """
+    alone = [is_heading(row) for row in rows]
+    texts = [
+        next(filter(str.strip, row.cells)).strip()
+        for row, one, below in zip(rows, alone, [*alone[1:], True], strict=False)
+        if one and not below
+    ]
+    places = sum(map(_names_place, texts))
+    return FEWEST <= len(texts) <= _MOST * len(rows) and places >= FEWEST and 2 * places >= len(texts)
+
+
+def _names_place(text: str) -> bool:
+    what = named(text)
+    return says_away(text) or (what is not None and what.field == "gallery")
+
+
+def place_by_heading(found: dict[str, Column], columns: Sequence[Column]) -> str:
+    """Take headings for the places of a list that has no column called so outright, and return what is to be said.
+
+    Parameters
+    ----------
+    found : dict of str to Column
+        Field -> its column; a column that was nearly called a place becomes one of cases or of words on the display.
+    columns : sequence of Column
+        Of the source.
+
+    Returns
+    -------
+    str
+        "" where there are no headings.
+    """
+    heading = next((one for one in columns if one.name == HEADING and one.filled), None)
+    if heading is None:
+        return ""
+    said = f"{len(heading.distinct)} rows are headings of the rows below them, such as {heading.distinct[0][:80]!r}"
+    place = found.get("gallery")
+    if place is not None and outright(place.name):
+        return f"{said}, and no objects; places are taken from {place.name!r}: --choose gallery={HEADING} takes these"
+    found["gallery"] = heading
+    if place is not None:
+        found.setdefault("displayed" if tells_display(place) else "case", place)
+    return f"{said}, and are taken for their places; --choose gallery=COLUMN takes others"

@@ -1,0 +1,108 @@
+"""Rows that head the rows below them, such as the name of a room across a list -> a column of that name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Set
+
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.rows import Row
+
+HEADING = "heading"
+"""The column with the heading under which a row stands."""
+
+MERGED = "is one of the merged cells"
+"""How the fault begins of a cell that a merged one hides."""
+
+
+def is_heading(row: Row) -> bool:
+    """Say whether a row holds one text alone, perhaps merged across the others.
+
+    Parameters
+    ----------
+    row : Row
+        Of a table.
+
+    Returns
+    -------
+    bool
+    """
+    filled = [cell for cell in row.cells if cell.strip()]
+    return (
+        len(filled) == 1
+        and len(row.cells) > 2
+        and any(map(str.isalpha, filled[0]))
+        and not row.fault[0]
+        and all(why.startswith(MERGED) for why, _ in row.faults.values())
+    )
+
+
+def under_headings(rows: Iterator[Row], file: str) -> Iterator[Row]:
+    """Yield the header and the rows with HEADING behind them; a heading is no row, but where no row stands below it.
+
+    Parameters
+    ----------
+    rows : iterator of Row
+        The header first.
+    file : str
+        The source's name in messages.
+
+    Yields
+    ------
+    Row
+        Numbered as they came.
+
+    Raises
+    ------
+    CollectionError
+        For a source that has such a column of its own.
+    """
+    header = next(rows, None)
+    if header is None:
+        return
+    if HEADING in (name.strip() for name in header.cells):
+        raise CollectionError(
+            f"{file}: has a column {HEADING!r} of its own; rename it, or leave [source] headings out of the mapping"
+        )
+    yield header._replace(cells=[*header.cells, HEADING])
+    above, waiting = "", None
+    for row in rows:
+        if is_heading(row):
+            if waiting is not None:
+                yield _headless(waiting)
+            above, waiting = next(cell.strip() for cell in row.cells if cell.strip()), row
+            continue
+        waiting = None
+        yield row._replace(cells=[*row.cells, above])
+    if waiting is not None:
+        yield _headless(waiting)
+
+
+def _headless(row: Row) -> Row:
+    text = next(cell.strip() for cell in row.cells if cell.strip())[:80]
+    fault = f"{text!r} stands alone in its row, as a heading does, and no row below it", "leave it out, or fill the row"
+    return row._replace(cells=[*row.cells, ""], fault=fault, faults={})
+
+
+def heads_or_sums(row: Row, number: str, beside: Set[int]) -> str:
+    """Say why a row parts the others, such as FURNITURE, or sums them up, such as TOTAL 168; "" where it does not.
+
+    It is told by its empty place: where no column tells places, nothing is taken for one.
+
+    Parameters
+    ----------
+    row : Row
+        Of a table.
+    number : str
+        Of the object that it may be.
+    beside : set of int
+        Places of the other cells that are read; empty where none tells places.
+
+    Returns
+    -------
+    str
+    """
+    if beside and beside <= row.faults.keys() and is_heading(row):
+        return "is merged across all columns: a heading"
+    if not beside or any(map(str.isnumeric, number)) or any(any(map(str.isalpha, row.cells[at])) for at in beside):
+        return ""
+    return "has no figure in it and nothing but numbers beside it: a heading, or a sum"
