@@ -22,6 +22,11 @@ FACTOR = ", and does not say whether its numbers have it already: scale in the m
 NO_RECORD = "; it may be a spectrum or an envelope, where it is no push of a test"
 """Ends what is said of numbers that never cross zero."""
 
+SENSITIVITY_ALONE = (
+    ", which has no response: what the instrument does to the highest and lowest frequencies stays; level=response has it"
+)
+"""Ends what is said of counts that are brought to m/s2 by one number."""
+
 LARGEST_SCALE = 4.0
 """By which a record is scaled at most without a doubt: a stronger earthquake has other periods and another length."""
 
@@ -52,7 +57,7 @@ def doubts(steps: Sequence[str]) -> tuple[str, ...]:
             found.append("; ".join(step[step.index(UNDECIDED) :].split("; ")[:2]))
         elif step.startswith(MAY_HOLD) or ALL_USED in step or DRIFTS in step or step.endswith(NO_RECORD):
             found.append(step)
-        elif FACTOR in step:
+        elif FACTOR in step or step.endswith(SENSITIVITY_ALONE):
             # Of each component.
             found.append(step.partition(": ")[2])
     scale = scale_of(steps)

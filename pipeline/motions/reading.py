@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.motions import knet
-from pipeline.motions.doubts import NO_RECORD
+from pipeline.motions.doubts import NO_RECORD, SENSITIVITY_ALONE
 from pipeline.motions.earthquakes import earthquakes, listed, window_of
 from pipeline.motions.errors import MotionError, judged, refusal
 from pipeline.motions.formats.trace_headers import channel_code
@@ -38,6 +38,7 @@ from pipeline.motions.quality import clipped, one_sided
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL, Component, Record
 from pipeline.motions.responses import load_obspy, read_inventory
 from pipeline.motions.several import tell_earthquakes, tell_renewals
+from pipeline.motions.station_metadata import sensitivity
 from pipeline.motions.unknown import unknown
 from pipeline.quantities import Array, G
 
@@ -403,6 +404,9 @@ def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> 
     if inventory is not None:
         if own not in {"", "counts"}:
             raise refusal(file, f"component {key!r}", f"is in {own} already", "drop response from the manifest")
+        if (counts := sensitivity(inventory, trace)) is not None:
+            trace.data = trace.data / counts
+            return [f"{key}: {counts:.9g} counts for 1 m/s2 by {record.response}{SENSITIVITY_ALONE}"]
         corners = prefilter(stats.sampling_rate, record.corner_hz)
         try:
             with warnings.catch_warnings(record=True) as caught:

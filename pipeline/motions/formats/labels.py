@@ -91,7 +91,11 @@ _RAW = re.compile(
     r"non corrig.{1,2}e?s?|unkorrigiert\w*|d.zeltilmemi.)\b",
     re.I,
 )
-_FILTERED = re.compile(r"\b(?:butterworth|band-?pass|high-?pass)\b|\bfilter\b.{0,40}[:=].*\d", re.I)
+_FILTERED = re.compile(
+    r"\b(?:butterworth|band-?pass|high-?pass|pas[ao][- ](?:banda|alt[ao])|passe-(?:bande|haut)|bandpass\w*|hochpass\w*)\b|"
+    r"\bfilter\b.{0,40}[:=].*\d",
+    re.I,
+)
 
 _TIME = re.compile(
     r"^(?:time|t|zeit|tiempo|tempo|temps|zaman|tijd|tid|czas|.as|timp|время|χρ.νος|时间|時間|seconds?|sec)$", re.I
