@@ -11,7 +11,7 @@ from typing import Any
 from pipeline.motions.candidates import MOST, Unusable
 from pipeline.motions.catalogues import Catalogues
 from pipeline.motions.errors import MotionError, refusal
-from pipeline.motions.formats.record_text import OtherQuantity
+from pipeline.motions.formats.record_text import OtherQuantityError
 from pipeline.motions.manifest import MANIFEST, NO_RECORDS
 from pipeline.motions.parts import LARGEST
 from pipeline.motions.peer_search import SearchRow, read_search
@@ -106,7 +106,7 @@ def gather(given: Sequence[Path], leave: frozenset[Path] = frozenset(), scratch:
                     made.passed_over.append(f"{one.shown}: words")
                     made.paths.pop(name, None)
                 else:
-                    other = isinstance(problem, OtherQuantity)
+                    other = isinstance(problem, OtherQuantityError)
                     made.unusable.append(Unusable(one_line(str(one.shown)), _why(one.path, problem), chosen=other))
     for folder in folders:
         _take_responses(folder, responses, made)

@@ -86,7 +86,7 @@ def unknown(file: Path) -> MotionError:
         if _SPECTRA.search(line):
             wrong = "holds spectra, which were derived from a record: of its motion they have the peaks alone"
             remedy = "give the file of the acceleration (such as volume 1 or 2 in place of 3)"
-            return record_text.OtherQuantity(f"{file}: file: {wrong}; {remedy}")
+            return record_text.OtherQuantityError(f"{file}: file: {wrong}; {remedy}")
         if (why := columns.refused(str(file))) is not None:
             return why
         first = f"its first line is {record_text.shown(_readable(line))}"

@@ -411,7 +411,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 network=network,
                 station=station,
                 location=location or (f"{number + 1:02d}" if width > 1 or not channel else ""),
-                channel=channel or trace_headers.channel_code(1.0 / dt, said, number + 1),
+                channel=channel or trace_headers.channel_code(1.0 / dt, said, number + 1 if width > 1 else None),
                 start=begins,
                 start_is="unknown" if begins is None else "record",
                 headonly=headonly,

@@ -36,7 +36,7 @@ class FormatError(MotionError):
     """
 
 
-class OtherQuantity(FormatError):
+class OtherQuantityError(FormatError):
     """A file of a velocity, a displacement or a spectrum: beside the accelerations of a record it is left out."""
 
 
@@ -76,9 +76,9 @@ class Lines:
         """
         return FormatError(f"{self.file}: line {index + 1}: {wrong}; {remedy}")
 
-    def other(self, index: int, wrong: str, remedy: str = "give the file of the acceleration") -> OtherQuantity:
+    def other(self, index: int, wrong: str, remedy: str = "give the file of the acceleration") -> OtherQuantityError:
         """Return the error of a file that holds no acceleration, at the line that says so; as `error`."""
-        return OtherQuantity(f"{self.file}: line {index + 1}: {wrong}; {remedy}")
+        return OtherQuantityError(f"{self.file}: line {index + 1}: {wrong}; {remedy}")
 
     def text(self, index: int, expected: str = "a line") -> str:
         """Return a line as printable text without trailing blanks.

@@ -197,9 +197,9 @@ def _step(lines: Lines, start: int, times: Array, unit: float) -> float:
     if rate > 0 and abs(1.0 / rate - dt) * (len(times) - 1) <= 1.02 * digit:
         dt = 1.0 / rate
     off = np.abs(times - (times[0] + dt * np.arange(len(times))))
-    slack = irregular.rounding(digit, dt)
-    worst = int(np.argmax(off > slack))
-    if off[worst] > slack:
+    late = off > irregular.rounding(digit, dt, times)
+    if late.any():
+        worst = int(np.argmax(late))
         wrong = f"time {times[worst]:g} s is off the even step of {dt:g} s"
         raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
     return dt

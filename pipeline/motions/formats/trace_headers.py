@@ -13,7 +13,7 @@ from pipeline.motions.formats.record_text import Lines
 from pipeline.quantities import Array, G
 
 FACTORS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "in/s2": 0.0254, "g": G, "mg": 0.001 * G}
-FACTORS |= {"g/10": 0.1 * G, "%g": 0.01 * G, "ft/s2": 0.3048, "mgal": 1e-5}
+FACTORS |= {"g/10": 0.1 * G, "%g": 0.01 * G, "ft/s2": 0.3048, "mgal": 1e-5, "nm/s2": 1e-9}
 """Metres per second squared in one of each unit of acceleration."""
 
 PEAK_TOLERANCE = 0.1
