@@ -81,7 +81,8 @@ class Unusable:
     reason : str
         What is wrong with it, and the remedy where there is one.
     chosen : bool
-        Whether it is sound, and another one of the same shaking was taken.
+        Whether it is sound, and another one of the same shaking was taken, such as the acceleration in place of the
+        velocity.
     """
 
     name: str

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from math import prod
 
 MAY_HOLD = "may hold "
-"""Begins the doubt that a record has a second earthquake in the coda of the first."""
+"""Begins the doubt that a record has a second earthquake in the coda of the first, or a fling step."""
 
 ALL_USED = "; all of it is used, "
 """Ends what is said of a record that has several earthquakes."""
@@ -21,6 +21,15 @@ FACTOR = ", and does not say whether its numbers have it already: scale in the m
 
 NO_RECORD = "; it may be a spectrum or an envelope, where it is no push of a test"
 """Ends what is said of numbers that never cross zero."""
+
+ALIKE = ": one was given twice, or it is no record of two directions"
+"""Ends what is said of a record whose horizontals are the same numbers."""
+
+SENSITIVITY_ALONE = (
+    ", which has no response: what the instrument does to the highest and lowest frequencies stays "
+    "(level=response has it)"
+)
+"""Ends what is said of counts that are brought to m/s2 by one number."""
 
 LARGEST_SCALE = 4.0
 """By which a record is scaled at most without a doubt: a stronger earthquake has other periods and another length."""
@@ -50,11 +59,13 @@ def doubts(steps: Sequence[str]) -> tuple[str, ...]:
     for step in steps:
         if UNDECIDED in step:
             found.append("; ".join(step[step.index(UNDECIDED) :].split("; ")[:2]))
-        elif step.startswith(MAY_HOLD) or ALL_USED in step or DRIFTS in step or step.endswith(NO_RECORD):
+        elif step.startswith(MAY_HOLD) or ALL_USED in step or DRIFTS in step or step.endswith((NO_RECORD, ALIKE)):
             found.append(step)
         elif FACTOR in step:
             # Of each component.
             found.append(step.partition(": ")[2])
+        elif step.endswith(SENSITIVITY_ALONE):
+            found.append(step.partition(", by ")[2])
     scale = scale_of(steps)
     if scale != 0.0 and not 1.0 / LARGEST_SCALE <= abs(scale) <= LARGEST_SCALE * (1.0 + 1e-9):
         found.append(

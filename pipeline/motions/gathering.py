@@ -11,6 +11,7 @@ from typing import Any
 from pipeline.motions.candidates import MOST, Unusable
 from pipeline.motions.catalogues import Catalogues
 from pipeline.motions.errors import MotionError, refusal
+from pipeline.motions.formats.record_text import OtherQuantityError
 from pipeline.motions.manifest import MANIFEST, NO_RECORDS
 from pipeline.motions.parts import LARGEST
 from pipeline.motions.peer_search import SearchRow, read_search
@@ -105,7 +106,8 @@ def gather(given: Sequence[Path], leave: frozenset[Path] = frozenset(), scratch:
                     made.passed_over.append(f"{one.shown}: words")
                     made.paths.pop(name, None)
                 else:
-                    made.unusable.append(Unusable(one_line(str(one.shown)), _why(one.path, problem)))
+                    other = isinstance(problem, OtherQuantityError)
+                    made.unusable.append(Unusable(one_line(str(one.shown)), _why(one.path, problem), chosen=other))
     for folder in folders:
         _take_responses(folder, responses, made)
     return made

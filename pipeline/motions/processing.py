@@ -17,6 +17,7 @@ from pipeline.motions.baseline import (
 from pipeline.motions.corners import choose_corner
 from pipeline.motions.doubts import DRIFTS
 from pipeline.motions.filtering import highpass, lowpass, remove_baseline
+from pipeline.motions.fling import fling_step
 from pipeline.motions.intensity import integrate
 from pipeline.motions.manifest import TargetTable
 from pipeline.motions.reading import PGA_MOST, Recording
@@ -222,7 +223,12 @@ def _filtered(motion: Motion, record: Record, recording: Recording) -> tuple[Mot
         motion = motion.called(motion.name, "no high-pass: a permanent displacement is kept, and noise with it")
     else:
         data, said, start = highpass(motion.acceleration, motion.dt, corner)
-        motion = Motion(motion.dt, data, motion.name, (*motion.steps, said), motion.source, start)
+        filtered = Motion(motion.dt, data, motion.name, start=start)
+        step = (
+            None if recording.window else fling_step(Motion(recording.dt, recording.data), filtered, record.pre_event_s)
+        )
+        told = (said,) if step is None else (said, step)
+        motion = Motion(motion.dt, data, motion.name, (*motion.steps, *told), motion.source, start)
     if record.lowpass_hz is not None:
         if corner is not None and corner >= record.lowpass_hz:
             raise InputError(f"lowpass_hz {record.lowpass_hz:g} must be above the high-pass corner of {corner:.4g} Hz")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pipeline.motions.doubts import ALIKE
 from pipeline.motions.plateaus import held
 from pipeline.quantities import Array
 
@@ -22,6 +23,22 @@ counts to the next sample on either side, one that holds two by at most 9: what 
 
 SHOULDER_SHARE = 2e-3
 """The same relative to the peak, for numbers without counts: twenty times the coarsest step of five printed digits."""
+
+SPIKE = 3.0
+"""Times that a sample stands farther out from between its neighbours than any that is no spike.
+
+Of 104 recorded channels those that are sound have up to 1.84, behind their first samples; three have such samples: two
+that are clipped, and one in which zeros stand for samples that were lost.
+"""
+
+SPIKE_SHARE = 0.3
+"""Least share of the peak by which it does."""
+
+SPIKES, SPIKE_APART = 5, 3
+"""Most spikes that are looked for, and samples around each that belong to it."""
+
+TWINS = 1e-5
+"""How far the correlation of two components may be below one for them to be the same numbers, printed twice."""
 
 LONG_RUN = 5
 """Samples in a row whose edges may take two samples, because the limit may lie just above the first one outside.
@@ -69,6 +86,13 @@ samples to the last digit: what is beyond a limit was left out."""
 DROP_RUN, DROP_ALONE = 3, 8
 """The same of one that is the only one (judgement): four zeros amid a weak record are a fault of its transmission."""
 
+
+HOLD_RUN, HOLD_COUNTS, HOLD_SHARE, HOLD_EDGE = 20, 100.0, 2e-3, 3.0
+"""Samples that one level is held for, counts and share of the range of the usual step before and behind it, and times
+that of the step into it or out of it, from which a channel has dropped out, or hung, however small the step is.
+
+Of 104 recorded channels none has such a run; film that was interpolated has runs of up to 17.
+"""
 
 _LEAST_SHAKEN, _FEW_CROSSINGS = 50, 8
 """Samples from which a channel is looked at, and crossings of its trend that are too few for shaking (judgement)."""
@@ -118,10 +142,31 @@ def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
                 f"{channel} is clipped: it holds {plateau.level:.6g} for {plateau.samples} samples and more from "
                 f"sample {plateau.start} ({plateau.start * dt:.6g} s), and falls away on both sides"
             )
-        if (jump := _jumped(row)) is not None:
+        if (jump := _jumped(row) or _spiked(row)) is not None:
             at, how = jump
             return f"{channel} {how} from sample {at} ({at * dt:.6g} s)"
     return None
+
+
+def alike(data: Array) -> str | None:
+    """Say that both horizontals of a record are one and the same but for a factor; None where they are not.
+
+    Parameters
+    ----------
+    data : array, shape (3, n)
+        In any unit, the horizontals first.
+
+    Returns
+    -------
+    str or None
+        What is so.
+    """
+    x, y = data[:2] - data[:2].mean(axis=1, keepdims=True)
+    size = float(np.sqrt((x @ x) * (y @ y)))
+    if size == 0.0 or abs(float(x @ y)) < (1.0 - TWINS) * size:
+        return None
+    factor = float(x @ y) / float(x @ x)
+    return f"both horizontal components are the same numbers, y {factor:.4g} times x{ALIKE}"
 
 
 def one_sided(row: Array) -> str | None:
@@ -226,7 +271,33 @@ def _jumped(row: Array) -> tuple[int, str] | None:
     if dropped.size >= 2 or longest >= DROP_ALONE:
         wrong = "drops out, or is clipped: amid its shaking it falls to one level at once and comes back"
         return int(starts[dropped[0]]), f"{wrong}, {dropped.size} times"
+    count = float(np.diff(np.unique(row)).min())
+    for start, end, edge in zip(starts, ends, np.maximum(into, out), strict=True):
+        if end - start + 1 >= HOLD_RUN and start > 0 and end < steps.size:
+            around = np.concatenate([steps[max(0, 2 * start - end - 1) : start], steps[end : 2 * end - start + 1]])
+            usual = float(np.median(np.abs(around)))
+            if usual >= max(HOLD_COUNTS * count, HOLD_SHARE * size) and edge >= HOLD_EDGE * usual:
+                return int(start), f"drops out: amid its shaking it holds one level for {end - start + 1} samples"
     return None
+
+
+def _spiked(row: Array) -> tuple[int, str] | None:
+    """The largest of a few samples that stand alone, and what it is; None for none."""
+    bend = np.abs(row[1:-1] - 0.5 * (row[:-2] + row[2:]))
+    # Where a filter begins or ends, a sample may stand alone.
+    bend[:SPIKE_APART] = bend[-SPIKE_APART:] = 0.0
+    found: list[tuple[float, int]] = []
+    while len(found) <= SPIKES and bend.any():
+        at = int(np.argmax(bend))
+        found.append((float(bend[at]), at + 1))
+        bend[max(0, at - SPIKE_APART) : at + SPIKE_APART + 1] = 0.0
+    sizes = [size for size, _ in found]
+    count = next((n for n in range(1, len(sizes)) if sizes[n - 1] >= SPIKE * sizes[n]), 0)
+    alone = [at for _, at in found[:count] if (row[at] - row[at - 1]) * (row[at] - row[at + 1]) > 0.0]
+    if not count or len(alone) < count or sizes[0] < SPIKE_SHARE * float(np.abs(row - np.median(row)).max()):
+        return None
+    times = f", {sizes[0] / sizes[count]:.2g} times as far as any other" if sizes[count] > 0.0 else ""
+    return alone[0], f"has a spike, no shaking: {count} of its samples stand alone{times},"
 
 
 def _flat_tops(row: Array) -> tuple[Array, Array]:

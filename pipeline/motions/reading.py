@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.motions import knet
-from pipeline.motions.doubts import NO_RECORD
+from pipeline.motions.doubts import NO_RECORD, SENSITIVITY_ALONE
 from pipeline.motions.earthquakes import earthquakes, listed, window_of
 from pipeline.motions.errors import MotionError, judged, refusal
 from pipeline.motions.formats.trace_headers import channel_code
@@ -34,16 +34,17 @@ from pipeline.motions.parts import (
     zero_of,
 )
 from pipeline.motions.plateaus import full_scale
-from pipeline.motions.quality import clipped, one_sided
+from pipeline.motions.quality import alike, clipped, one_sided
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL, Component, Record
 from pipeline.motions.responses import load_obspy, read_inventory
 from pipeline.motions.several import tell_earthquakes, tell_renewals
+from pipeline.motions.station_metadata import sensitivity
 from pipeline.motions.unknown import unknown
 from pipeline.quantities import Array, G
 
 logger = logging.getLogger(__name__)
 
-UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "g": G, "mg": 0.001 * G}
+UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "nm/s2": 1e-9, "gal": 0.01, "g": G, "mg": 0.001 * G}
 """Metres per second squared in one of each unit that a manifest may name."""
 
 _SPELLINGS = {"m/s**2": "m/s2", "m/s/s": "m/s2", "m/s^2": "m/s2", "cm/s**2": "cm/s2", "cm/s/s": "cm/s2"}
@@ -185,6 +186,7 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     check_together(rows, inventory, record.accept, steps)
     processed = _processed(folder, record.name, record.processed, [trace for _, trace, _ in rows.values()], steps)
     data, dt, first = aligned(rows, steps)
+    steps += [said for said in (alike(data),) if said]
     velocity = None
     if processed and velocities.keys() == rows.keys():
         velocity = np.zeros_like(data)
@@ -403,6 +405,9 @@ def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> 
     if inventory is not None:
         if own not in {"", "counts"}:
             raise refusal(file, f"component {key!r}", f"is in {own} already", "drop response from the manifest")
+        if (counts := sensitivity(inventory, trace)) is not None:
+            trace.data = trace.data / counts
+            return [f"{key}: {counts:.9g} counts for 1 m/s2, by {record.response}{SENSITIVITY_ALONE}"]
         corners = prefilter(stats.sampling_rate, record.corner_hz)
         try:
             with warnings.catch_warnings(record=True) as caught:

@@ -55,7 +55,7 @@ def _a_time(text: str) -> str:
 
 
 Time = Annotated[str, AfterValidator(_a_time), Field(json_schema_extra={"pattern": _TIME})]
-Unit = Literal["m/s2", "cm/s2", "mm/s2", "gal", "g", "mg"]
+Unit = Literal["m/s2", "cm/s2", "mm/s2", "nm/s2", "gal", "g", "mg"]
 
 
 NO_VERTICAL = "no vertical component was recorded: the motion has none"

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
+from math import isfinite
 from typing import Any
 
+from pipeline.motions.formats import unit_words
 from pipeline.motions.safe_names import one_line
 
 
@@ -50,14 +52,41 @@ def place(trace: Any) -> str:
     return one_line(str(trace.stats.get("kouros", {}).get("sensor_place", "")))
 
 
-def has_response(inventory: Any, trace: Any) -> bool:
-    """Whether an inventory has the full response of a channel at its time."""
+def _response(inventory: Any, trace: Any) -> Any:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return bool(inventory.get_response(trace.id, trace.stats.starttime).response_stages)
+            return inventory.get_response(trace.id, trace.stats.starttime)
     except Exception:  # noqa: BLE001 - obspy raises a bare Exception for what it does not know
-        return False
+        return None
+
+
+def has_response(inventory: Any, trace: Any) -> bool:
+    """Whether an inventory brings a channel's counts to m/s2 at its time: by its response, or by `sensitivity`."""
+    response = _response(inventory, trace)
+    return bool(response and (response.response_stages or sensitivity(inventory, trace)))
+
+
+def sensitivity(inventory: Any, trace: Any) -> float | None:
+    """Return the counts of one m/s2 of an accelerometer of which an inventory has no more than that (level=channel).
+
+    Parameters
+    ----------
+    inventory : obspy.Inventory
+        Of a StationXML.
+    trace : obspy.Trace
+        Of the channel.
+
+    Returns
+    -------
+    float or None
+        None where it has the response, or knows no such number of an acceleration.
+    """
+    response = _response(inventory, trace)
+    whole = response and not response.response_stages and response.instrument_sensitivity
+    if not whole or unit_words.unit_of(str(whole.input_units or "")) != ("acceleration", "m/s2"):
+        return None
+    return float(whole.value) if whole.value and isfinite(whole.value) else None
 
 
 def sac_direction(trace: Any) -> tuple[float | None, float | None]:

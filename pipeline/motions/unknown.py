@@ -85,9 +85,8 @@ def unknown(file: Path) -> MotionError:
         line = next(line for line in start.splitlines() if line.strip())
         if _SPECTRA.search(line):
             wrong = "holds spectra, which were derived from a record: of its motion they have the peaks alone"
-            return refusal(
-                file, "file", wrong, "give the file of the acceleration (such as volume 1 or 2 in place of 3)"
-            )
+            remedy = "give the file of the acceleration (such as volume 1 or 2 in place of 3)"
+            return record_text.OtherQuantityError(f"{file}: file: {wrong}; {remedy}")
         if (why := columns.refused(str(file))) is not None:
             return why
         first = f"its first line is {record_text.shown(_readable(line))}"

@@ -170,7 +170,7 @@ def add(
         if wish.answers.name and len(proposals) > 1:
             names = ", ".join(one.name for one in proposals)
             raise UsageError(f"--name is for one record, and the files hold {len(proposals)}: {names}")
-        _nothing_wrong(proposals, [*left, *found.unusable], found.passed_over, guess=wish.guess)
+        _nothing_wrong(proposals, left, found, guess=wish.guess)
         made = plan(folder, level, proposals, wish.accept, before, known, keep=0 if dry_run else SHOWN)
         left = [*left, *found.unusable, *(Unusable(name, str(problem)) for name, problem in made.refused)]
         _clash(wish, made.level, made.already, known)
@@ -245,10 +245,15 @@ def _listed(missing: Sequence[MissingAnswer]) -> str:
 
 
 def _nothing_wrong(
-    proposals: Sequence[RecordProposal], every: Sequence[Unusable], passed_over: Sequence[str], *, guess: bool
+    proposals: Sequence[RecordProposal], left: Sequence[Unusable], found: GatheredFiles, *, guess: bool
 ) -> None:
-    """Refuse files that are no records where each was named, and files among which there is no record at all."""
-    wrong = [one for one in every if not one.chosen]
+    """Refuse files that are no records where each was named, and files among which there is no record at all.
+
+    A velocity or a spectrum is left out beside its accelerations; where a vertical is missing, it may be that.
+    """
+    every, passed_over = [*left, *found.unusable], found.passed_over
+    flat = any(one.record is not None and one.record.vertical == "absent" for one in proposals)
+    wrong = [one for one in every if not one.chosen or (flat and one in found.unusable)]
     if not proposals or (wrong and not guess):
         told = [(one.name, one.reason) for one in (wrong or every)]
         why = f" ({'; '.join(passed_over[:5])})" if passed_over else ""

@@ -290,3 +290,43 @@ def test_a_second_earthquake_is_told_where_it_is_seen(tmp_path: Path) -> None:
     assert re.search(r'<p class="act">Doubtful: may hold two earthquakes, [^<]*</p>', page)
     code, out = say(tmp_path, "show", "mine")
     assert (code, len(told.findall(out))) == (0, 1), out
+
+
+def esm_files(folder: Path, codes: str = "NEZ") -> None:
+    """As ESM packs them: of each component acceleration, velocity and response spectrum."""
+    folder.mkdir()
+    values = 100.0 * tone(1500)
+    size = f"{np.abs(values).max():.6f}"
+    for code in codes:
+        keys = {"NDATA": "1500", "STREAM": f"HN{code}", "PGA_CM/S^2": size}
+        head = hand.esm(**keys).decode().splitlines()[:-60]
+        samples = [f"{value:.6f}" for value in values]
+        other = [line.replace("DATA_TYPE: ACCELERATION", "DATA_TYPE: VELOCITY") for line in head]
+        (folder / f"X.HN{code}.ACC.ASC").write_text("\n".join([*head, *samples, ""]))
+        (folder / f"X.HN{code}.VEL.ASC").write_text("\n".join([*other, *samples, ""]))
+    (folder / "X.v3").write_text("Response and Fourier Amplitude Spectra  X  Chan 1\n" + "1.0 2.0\n" * 200)
+
+
+def test_velocities_and_spectra_beside_accelerations_are_left_out(tmp_path: Path) -> None:
+    esm_files(tmp_path / "new")
+    code, out = say(tmp_path, "add", "new", "--site", "mine", "--no-compare")
+    assert code == 0, out
+    record = load_manifest(tmp_path / "mine").level[0].record[0]
+    assert sorted(Path(name).name for name in record.files) == [f"X.HN{one}.ACC.ASC" for one in "ENZ"]
+    assert out.count("the file holds 'VELOCITY'; give the file of the acceleration") == 3
+    assert "holds response and Fourier spectra" in out
+
+
+def test_a_velocity_in_the_place_of_the_vertical_is_refused(tmp_path: Path) -> None:
+    esm_files(tmp_path / "new")
+    (tmp_path / "new" / "X.HNZ.ACC.ASC").unlink()
+    code, out = say(tmp_path, "add", "new", "--site", "mine", "--no-compare")
+    assert (code, "X.HNZ.VEL.ASC" in out, (tmp_path / "mine").exists()) == (4, True, False), out
+
+
+def test_velocities_alone_are_no_record(tmp_path: Path) -> None:
+    esm_files(tmp_path / "new")
+    for file in (tmp_path / "new").glob("*.ACC.ASC"):
+        file.unlink()
+    code, out = say(tmp_path, "add", "new", "--site", "mine")
+    assert (code, "holds 'VELOCITY'" in out, (tmp_path / "mine").exists()) == (4, True, False), out

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from pipeline.motions import load_manifest
+from pipeline.motions.reading import read_record
 from tests.cli.test_add_command import DEMO, say
 from tests.motions.test_components import knet
 
@@ -137,3 +138,40 @@ def test_of_two_depths_by_stationxml_the_surface_is_taken(tmp_path: Path, surfac
     assert out.count('.mseed",') + out.count('.mseed"\n') == 3, "no other file is part of a record"
     below = "10" if surface == "00" else "00"
     assert f"CI.CLC.{below}.HNZ: in a borehole, and a museum stands on the surface, where its other record stood" in out
+
+
+def sensitivity_alone(file: Path, unit: str) -> None:
+    """The demonstration's StationXML as level=channel has it: each channel's sensitivity, and no stages."""
+    inventory = obspy.read_inventory(str(DEMO / "CI.CLC.xml"))
+    for channel in inventory[0][0]:
+        channel.response.response_stages = []
+        channel.response.instrument_sensitivity.input_units = unit
+    inventory.write(str(file), format="STATIONXML")
+
+
+def test_counts_with_their_sensitivity_alone_are_read_and_doubted(tmp_path: Path) -> None:
+    """By the same numbers as a division by hand."""
+    new = tmp_path / "new"
+    new.mkdir()
+    for file in DEMO.glob("CI.CLC..HN?.mseed"):
+        (new / file.name).write_bytes(file.read_bytes())
+    sensitivity_alone(new / "CI.CLC.xml", "M/S**2")
+    code, out = say(tmp_path, "add", "new", "--site", "mine", "--no-compare")
+    assert code == 0, out
+    assert " ".join(out.split()).count("CI.CLC.xml, which has no response: what the instrument does") == 1
+    record = load_manifest(tmp_path / "mine").level[0].record[0]
+    found = read_record(tmp_path / "mine", record)
+    for row, letter in enumerate("EN"):
+        (trace,) = obspy.read(str(DEMO / f"CI.CLC..HN{letter}.mseed"))
+        response = obspy.read_inventory(str(DEMO / "CI.CLC.xml")).get_response(trace.id, trace.stats.starttime)
+        assert found.data[row] == pytest.approx(trace.data / response.instrument_sensitivity.value, rel=1e-12)
+
+
+def test_the_sensitivity_of_a_velocity_sensor_is_no_response(tmp_path: Path) -> None:
+    new = tmp_path / "new"
+    new.mkdir()
+    for file in DEMO.glob("CI.CLC..HN?.mseed"):
+        (new / file.name).write_bytes(file.read_bytes())
+    sensitivity_alone(new / "CI.CLC.xml", "M/S")
+    code, out = say(tmp_path, "add", "new", "--site", "mine", "--no-compare")
+    assert (code, "level=response" in out) == (2, True), out

@@ -8,7 +8,7 @@ import numpy as np
 import obspy
 import pytest
 
-from pipeline.motions.quality import clipped, cut_off, one_sided
+from pipeline.motions.quality import alike, clipped, cut_off, one_sided
 from pipeline.resources import resource
 from tests.motions.formats.conftest import agency_file
 
@@ -200,3 +200,61 @@ def test_spectra_and_envelopes_are_one_sided():
         assert "crosses its own trend" in one_sided(row)
     assert one_sided(np.sin(2.0 * np.pi * t)) is None
     assert one_sided(np.zeros(400)) is None
+
+
+def shaken(seed: int = 1, n: int = 6000) -> np.ndarray:
+    """Noise about 2 Hz at 100 samples a second, louder in its middle, in hundredths of cm/s2, with an offset."""
+    rng = np.random.default_rng(seed)
+    f = np.fft.rfftfreq(n, 0.01)
+    row = np.fft.irfft(np.fft.rfft(rng.standard_normal(n)) * np.exp(-((np.log(np.maximum(f, 1e-9) / 2.0)) ** 2)), n)
+    row *= np.exp(-(((np.arange(n) - 2500) / 900.0) ** 2))
+    return np.round(200.0 * row / np.abs(row).max() - 3.0, 2)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("spikes", [[(4000, 150.0)], [(2400, -400.0), (3300, 380.0), (3900, 500.0)]])
+def test_samples_that_stand_alone_are_spikes(seed, spikes):
+    row = shaken(seed)
+    assert clipped(row[None], 0.01, ("HNE",)) is None
+    for at, size in spikes:
+        row[at] += size
+    said = clipped(row[None], 0.01, ("HNE",))
+    assert f"{len(spikes)} of its samples stand alone" in said
+    largest = max(spikes, key=lambda one: abs(one[1]))[0]
+    assert f"from sample {largest} ({0.01 * largest:g} s)" in said
+
+
+def test_a_jump_and_a_kink_are_no_spikes():
+    """As test signals have them: one that decays from its first sample on, a triangle."""
+    t = 0.01 * np.arange(3000)
+    decaying = np.where(t > 5.0, np.exp(5.0 - t), 0.0)
+    triangle = np.clip(1.0 - np.abs(t - 10.0), 0.0, None)
+    for row in (decaying, triangle, np.sin(2.0 * np.pi * t)):
+        said = clipped(row[None], 0.01, ("x",))
+        assert said is None or "spike" not in said
+
+
+@pytest.mark.parametrize("level", [0.0, None])
+@pytest.mark.parametrize("seed", range(6))
+def test_a_level_that_is_held_amid_the_shaking_is_a_drop_out(seed, level):
+    """30 samples that are zero, or hang at the last one, though the step into them is none."""
+    row = shaken(seed)
+    start = 2200 + int(np.argmax(np.abs(row[2200:2260] + 3.0)))
+    row[start : start + 30] = row[start - 1] if level is None else level
+    assert "HNE" in clipped(row[None], 0.01, ("HNE",))
+
+
+def test_a_pause_between_two_bursts_is_no_drop_out():
+    t = 0.01 * np.arange(3000)
+    row = np.where((t < 10.0) | (t > 11.0), np.sin(2.0 * np.pi * t), 0.0)
+    assert clipped(row[None], 0.01, ("x",)) is None
+
+
+@pytest.mark.parametrize("factor", [1.0, -1.0, 0.5])
+def test_one_component_given_twice_is_told(factor):
+    x, y = shaken(1), shaken(2)
+    assert alike(np.array([x, y, y])) is None
+    said = alike(np.array([x, np.round(factor * x, 2), y]))
+    assert said is not None
+    assert f"y {factor:g} times x" in said
+    assert alike(np.array([x, 0.0 * x, y])) is None, "a dead channel is told otherwise"

@@ -397,8 +397,6 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
             notes = f"its head names a factor of {head.factor:.9g}{FACTOR}"
         data = block.data[:, number].copy()
         peak = head.peak[0] if head.peak and width == 1 and factor else None
-        if peak and head.peak and factor:
-            trace_headers.said_peak(lines, head.at["peak"], *head.peak, data, factor)
         network, station, location, channel = head.code
         traces.append(
             trace_headers.make_trace(
@@ -413,7 +411,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 network=network,
                 station=station,
                 location=location or (f"{number + 1:02d}" if width > 1 or not channel else ""),
-                channel=channel or trace_headers.channel_code(1.0 / dt, said, number + 1),
+                channel=channel or trace_headers.channel_code(1.0 / dt, said, number + 1 if width > 1 else None),
                 start=begins,
                 start_is="unknown" if begins is None else "record",
                 headonly=headonly,
@@ -430,6 +428,9 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 about=header_facts.about(**head.about),
             )
         )
+    if head.peak and not headonly and all(trace.stats.kouros.si_factor for trace in traces):
+        data = np.array([trace.stats.kouros.si_factor * trace.data for trace in traces])
+        trace_headers.said_peak(lines, head.at["peak"], *head.peak, data, 1.0)
     return traces
 
 
@@ -444,7 +445,7 @@ def _accelerations(lines: Lines, block: _Block) -> list[int]:
     over = block.columns and labels.is_period(block.columns[0].name)
     if at is not None and (over or labels.of_spectra(lines.text(at))):
         wrong = f"names spectra ({shown(lines.text(at))}), no acceleration"
-        raise lines.error(at, wrong, "give the file of the acceleration")
+        raise lines.other(at, wrong)
     if not chosen:
         unit = block.columns[0].unit if block.columns and block.columns[0].unit else block.head.unit
         raise _other(lines, block.head, kinds[0], unit)
@@ -454,7 +455,7 @@ def _accelerations(lines: Lines, block: _Block) -> list[int]:
 def _other(lines: Lines, head: RecordHead, kind: str, unit: str) -> FormatError:
     at = head.at.get("unit", head.at.get("columns", 0))
     wrong = f"holds {kind}{f' ({unit})' if unit else ''}, no acceleration"
-    return lines.error(at, wrong, "give the file of the acceleration")
+    return lines.other(at, wrong)
 
 
 def _step(lines: Lines, start: int, block: _Block) -> float:

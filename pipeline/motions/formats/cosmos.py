@@ -224,7 +224,7 @@ def _beside(lines: Lines, top: int, traces: list[Any], names: dict[str, Any], se
     owner = next((trace for trace in reversed(traces) if trace.id == seed), None)
     kinds = " and ".join(series)
     if owner is None:
-        raise lines.error(top, f"{kinds} of {seed} without its acceleration", "give the file of the acceleration")
+        raise lines.other(top, f"{kinds} of {seed} without its acceleration")
     for kind, values in series.items():
         if kind in owner.stats.kouros or len(values) != owner.stats.npts:
             raise lines.error(top, f"{kind} of {seed} comes twice, or is of another length than its acceleration")

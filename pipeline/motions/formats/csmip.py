@@ -71,7 +71,7 @@ def is_format(source: Source) -> bool:
 def _traces(lines: Lines, headonly: bool) -> list[Any]:
     """Return the traces of a CSMIP file, one a channel."""
     if _SPECTRA.search(lines.text(0)):
-        raise lines.error(0, "the file holds response and Fourier spectra", "give the file of volume 1 or 2 (V1, V2)")
+        raise lines.other(0, "the file holds response and Fourier spectra", "give the file of volume 1 or 2 (V1, V2)")
     return record_text.one_after_other(lines, lambda top, _number: _channel(lines, top, headonly))
 
 

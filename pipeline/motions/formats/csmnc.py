@@ -37,7 +37,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     """Return the trace of a CSMNC file."""
     at, kind = _said(lines, _KIND, "'UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC'")
     if kind[2] != "ACCELERATION":
-        raise lines.error(at, f"the file holds {kind[2].lower()}", "give the file of the acceleration")
+        raise lines.other(at, f"the file holds {kind[2].lower()}")
     if kind[3].upper() not in _UNITS:
         raise lines.error(at, f"expected one of {', '.join(_UNITS)}, found {record_text.shown(kind[3])}")
     unit = _UNITS[kind[3].upper()]

@@ -48,7 +48,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     said = keys.said
     at, kind = said("DATA_TYPE")
     if not _TYPE.match(kind):
-        raise lines.error(at, f"the file holds {record_text.shown(kind)}", "give the file of the acceleration")
+        raise lines.other(at, f"the file holds {record_text.shown(kind)}")
     at, unit = said("UNITS")
     if unit.lower() not in _UNITS:
         raise lines.error(at, f"expected one of {', '.join(_UNITS)}, found {record_text.shown(unit)}")

@@ -54,6 +54,30 @@ def resampled(lines: Lines, index: int, per_line: int, times: Array, data: Array
     return np.interp(times[0] + dt * np.arange(count), times, data), told
 
 
+def rounding(digit: float, dt: float, times: Array) -> Array:
+    """Return how far times may lie off their even steps for how they are printed.
+
+    A table that shows 0.01 s of a step of 0.005 s has each time within half of that, and a sample that is missing is
+    a whole step; finer ones may also be cut off, and their first one is rounded as well.  Programs that print six
+    digits have fewer places from 10 s on.
+
+    Parameters
+    ----------
+    digit, dt : float
+        One in the last printed place at the beginning, and the step, in s.
+    times : array, shape (n,)
+        In s.
+
+    Returns
+    -------
+    array, shape (n,)
+        In s.
+    """
+    six = 0.51e-5 * 10.0 ** np.floor(np.log10(np.maximum(np.abs(times), 1e-9)))
+    coarse = 0.51 * digit if digit <= 2.01 * dt else 0.0
+    return np.maximum(np.minimum(np.maximum(1.02 * digit, six), 0.2 * dt), coarse)
+
+
 def even_step(times: Array, digit: float) -> float | None:
     """Return the step of times that are even but for their rounding, None where they are not.
 
@@ -75,5 +99,5 @@ def even_step(times: Array, digit: float) -> float | None:
     whole = 1.0 / max(1, round(1.0 / dt))
     if abs(whole - dt) * (len(times) - 1) <= digit:
         dt = whole
-    slack = min(1.02 * digit, 0.2 * dt)
-    return dt if np.abs(times - times[0] - dt * np.arange(len(times))).max() <= slack else None
+    off = np.abs(times - times[0] - dt * np.arange(len(times)))
+    return dt if (off <= rounding(digit, dt, times)).all() else None

@@ -53,7 +53,9 @@ _COUNT = _label(
 )
 _UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit|birim|单位|単位|единицы(?: измерения)?", r"(\S.*)")
 _ACCELERATION = r"\b(?:accel\w*|acc.l.ration\w*|acel\w*|beschleunigung\w*|ivme\w*|ускорени\w*)\b"
-_IN = re.compile(rf"{_ACCELERATION}.{{0,40}}?\b(?:in|en|em) (?:units of )?([^\s,;()]{{1,12}})(?=$|[\s,;(])", re.I)
+_IN = re.compile(
+    rf"(?:{_ACCELERATION}.{{0,40}}?|\bdata )\b(?:in|en|em) (?:units of )?([^\s,;()=]{{1,12}})(?=$|[\s,;(=])", re.I
+)
 _IN_BRACKETS = re.compile(rf"{_ACCELERATION}[^()\[\]:=]{{0,40}}[(\[]\s*([^()\[\]]{{1,12}}?)\s*[)\]](?!\s*[:=])", re.I)
 _NOT_THE_SAMPLES = re.compile(r"\b(?:peak|max\w*|pga|m[aá]xim\w*|picco)\b", re.I)
 _TURN = _label(
@@ -91,7 +93,12 @@ _RAW = re.compile(
     r"non corrig.{1,2}e?s?|unkorrigiert\w*|d.zeltilmemi.)\b",
     re.I,
 )
-_FILTERED = re.compile(r"\b(?:butterworth|band-?pass|high-?pass)\b|\bfilter\b.{0,40}[:=].*\d", re.I)
+_FILTERED = re.compile(
+    r"\b(?:butterworth|band[- ]?pass|high[- ]?pass|pas[ao][- ](?:banda|alt[ao])|passe-(?:bande|haut)|"
+    r"bandpassgefiltert|hochpassgefiltert)\b|"
+    r"\bfilt(?:er\b|\.).{0,40}[:=].*\d",
+    re.I,
+)
 
 _TIME = re.compile(
     r"^(?:time|t|zeit|tiempo|tempo|temps|zaman|tijd|tid|czas|.as|timp|время|χρ.νος|时间|時間|seconds?|sec)$", re.I
@@ -132,11 +139,11 @@ _PREFIX = re.compile(
     re.I,
 )
 _SAID: dict[str, Orientation] = {
-    **dict.fromkeys(("e-o", "eo", "este-oeste", "est-ouest", "est-ovest", "o-w", "ost-west", "d-b",
-                     "doğu-batı", "в-з", "восток-запад", "l-o", "leste-oeste", "α-δ"), 90.0),
+    **dict.fromkeys(("e-o", "eo", "e-v", "est-vest", "este-oeste", "est-ouest", "est-ovest", "o-w", "ost-west",
+                     "d-b", "dogu-bati", "doğu-batı", "в-з", "восток-запад", "l-o", "leste-oeste", "α-δ"), 90.0),
     **dict.fromkeys(("norte-sur", "nord-sud", "nord-süd", "kuzey-güney", "k-g", "с-ю", "север-юг", "norte-sul",
-                     "β-ν"), 0.0),
-    **dict.fromkeys(("verticale", "vertikal", "düşey", "arriba", "вертикаль", "κατακόρυφη"), "up"),
+                     "kuzey-guney", "β-ν"), 0.0),
+    **dict.fromkeys(("verticale", "vertikal", "düşey", "dusey", "arriba", "вертикаль", "κατακόρυφη"), "up"),
 }  # fmt: skip
 """Orientations in other languages; the first of two directions is the positive one."""
 

@@ -36,6 +36,10 @@ class FormatError(MotionError):
     """
 
 
+class OtherQuantityError(FormatError):
+    """A file of a velocity, a displacement or a spectrum: beside the accelerations of a record it is left out."""
+
+
 @dataclass(frozen=True, eq=False)
 class Lines:
     """The lines of a record file without their ends; line numbers in messages start at 1, indices at 0.
@@ -71,6 +75,10 @@ class Lines:
         FormatError
         """
         return FormatError(f"{self.file}: line {index + 1}: {wrong}; {remedy}")
+
+    def other(self, index: int, wrong: str, remedy: str = "give the file of the acceleration") -> OtherQuantityError:
+        """Return the error of a file that holds no acceleration, at the line that says so; as `error`."""
+        return OtherQuantityError(f"{self.file}: line {index + 1}: {wrong}; {remedy}")
 
     def text(self, index: int, expected: str = "a line") -> str:
         """Return a line as printable text without trailing blanks.

@@ -71,7 +71,7 @@ def read_format(source: Source, headonly: bool = False, resample: float = irregu
     lines = record_text.open_lines(source)
     kind = lines.match(0, _TITLE, "'1 UNCORRECTED ACCELEROGRAM', or '2 CORRECTED ACCELEROGRAM'")
     if kind[1] not in _FORMS:
-        raise lines.error(0, f"the file holds {kind[2].lower()}", "give the file of the acceleration")
+        raise lines.other(0, f"the file holds {kind[2].lower()}")
     integers, index = blocks.fixed(lines, _TEXT, 48, 8, 10, "the integer header")
     reals, index = blocks.fixed(lines, index, 50, 5, 15, "the real header")
     index = _after_comments(lines, index, integers)

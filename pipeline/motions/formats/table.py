@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import blocks, labels, nied, record_text, trace_headers, unit_words
+from pipeline.motions.formats import blocks, irregular, labels, nied, record_text, trace_headers, unit_words
 from pipeline.motions.formats.record_text import Lines, Source
 from pipeline.motions.formats.trace_headers import FACTORS, Orientation
 from pipeline.quantities import Array
@@ -192,13 +192,14 @@ def _step(lines: Lines, start: int, times: Array, unit: float) -> float:
     blocks.step(lines, start, dt)
     # Times may be rounded to what is printed, not more: 1/128 s comes as 0.008, 0.016, 0.023.
     decimals = max(len(line.split()[0].partition(b".")[2]) for line in map(_first, lines.lines[start : start + 20]))
-    slack = 0.51 * unit * 10.0 ** -min(decimals, 15) + 1e-9 * abs(float(times[-1]))
+    digit = unit * 10.0 ** -min(decimals, 15) + 2e-9 * abs(float(times[-1]))
     rate = round(1.0 / dt)
-    if rate > 0 and abs(1.0 / rate - dt) * (len(times) - 1) <= 2.0 * slack:
+    if rate > 0 and abs(1.0 / rate - dt) * (len(times) - 1) <= 1.02 * digit:
         dt = 1.0 / rate
     off = np.abs(times - (times[0] + dt * np.arange(len(times))))
-    worst = int(np.argmax(off > min(2.0 * slack, 0.2 * dt)))
-    if off[worst] > min(2.0 * slack, 0.2 * dt):
+    late = off > irregular.rounding(digit, dt, times)
+    if late.any():
+        worst = int(np.argmax(late))
         wrong = f"time {times[worst]:g} s is off the even step of {dt:g} s"
         raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
     return dt

@@ -13,7 +13,7 @@ from pipeline.motions.formats.record_text import Lines
 from pipeline.quantities import Array, G
 
 FACTORS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "in/s2": 0.0254, "g": G, "mg": 0.001 * G}
-FACTORS |= {"g/10": 0.1 * G, "%g": 0.01 * G, "ft/s2": 0.3048, "mgal": 1e-5}
+FACTORS |= {"g/10": 0.1 * G, "%g": 0.01 * G, "ft/s2": 0.3048, "mgal": 1e-5, "nm/s2": 1e-9}
 """Metres per second squared in one of each unit of acceleration."""
 
 PEAK_TOLERANCE = 0.1
@@ -51,7 +51,9 @@ class Series:
 
 
 _QUADRANT = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d*)?)\s*([EW])")
-_AZIMUTH = re.compile(r"(\d{1,3}(?:\.\d*)?)\s*(?:DEG(?:REES)?)?\.?")
+_AZIMUTH = re.compile(r"(?:(\d{1,3}(?:\.\d*)?)\s*(?:DEG(?:REES)?|°)?\.?|N\s*(\d{3}(?:\.\d*)?)\s*E)")
+"""Degrees clockwise from north; from 100 on networks write them as N129E, too."""
+
 _WORDS: dict[str, Orientation] = {"UP": "up", "DOWN": "down", "DN": "down", "DWN": "down"}
 _WORDS |= {"NS": 0.0, "N-S": 0.0, "EW": 90.0, "E-W": 90.0, "UD": "up", "U-D": "up", "UPDO": "up"}
 _WORDS |= {"NORTH-SOUTH": 0.0, "EAST-WEST": 90.0, "UP-DOWN": "up", "UPWARD": "up"}
@@ -79,8 +81,8 @@ def orientation(text: str) -> Orientation:
     if (quadrant := _QUADRANT.fullmatch(word)) and float(quadrant[2]) <= 90.0:
         turn = float(quadrant[2]) if quadrant[1] == "N" else 180.0 - float(quadrant[2])
         return (turn if quadrant[3] == "E" else -turn) % 360.0
-    if (azimuth := _AZIMUTH.fullmatch(word)) and float(azimuth[1]) <= 360.0:
-        return float(azimuth[1]) % 360.0
+    if (azimuth := _AZIMUTH.fullmatch(word)) and float(azimuth[1] or azimuth[2]) <= 360.0:
+        return float(azimuth[1] or azimuth[2]) % 360.0
     return text.strip() or None
 
 
@@ -118,8 +120,8 @@ def said_peak(lines: Lines, index: int, said: float, digit: float, data: Array, 
         The peak in m/s2; zero is taken for one that was not filled in.
     digit : float
         One in its last printed place, in m/s2.
-    data : array, shape (n,)
-        The samples.
+    data : array, shape (n,) or (k, n)
+        The samples, or those of k components, of which one has to have the peak.
     factor : float
         Times the samples gives m/s2.
 
@@ -131,10 +133,12 @@ def said_peak(lines: Lines, index: int, said: float, digit: float, data: Array, 
     said = abs(said)
     if said == 0.0:
         return
-    found = factor * float(np.abs(data).max())
-    about = factor * float(np.abs(data - data.mean()).max())
+    rows = np.atleast_2d(data)
+    as_they_are = factor * np.abs(rows).max(axis=1)
+    about = factor * np.abs(rows - rows.mean(axis=1, keepdims=True)).max(axis=1)
     slack = PEAK_TOLERANCE * said + digit
-    if min(abs(found - said), abs(about - said)) > slack:
+    if np.abs(np.concatenate([as_they_are, about]) - said).min() > slack:
+        found = float(as_they_are.max())
         wrong = f"says a peak acceleration of {said:.4g} m/s2, and the samples have {found:.4g} m/s2"
         raise lines.error(index, wrong, "it is damaged, or of another unit or record: fetch it again")
 

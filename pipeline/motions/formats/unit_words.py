@@ -14,6 +14,7 @@ SECONDS = {
     "seconds": 1.0,
     "ms": 0.001,
     "msec": 0.001,
+    "seg": 1.0,
     "sn": 1.0,
     "с": 1.0,
     "сек": 1.0,
@@ -28,7 +29,11 @@ _OTHERS = {
 }
 _ALIKE = {
     "gals": "gal",
-    **{f"{length}{spelt}": f"{length}/s2" for length in ("m", "cm", "mm", "in", "ft") for spelt in ("/s/s", "s-2")},
+    **{
+        f"{length}{spelt}": f"{length}/s2"
+        for length in ("m", "cm", "mm", "nm", "in", "ft")
+        for spelt in ("/s/s", "s-2")
+    },
     "g's": "g",
     **dict.fromkeys(("pctg", "percentg", "percentofg", "g%", "%ofg"), "%g"),
     "м/с2": "m/s2",

@@ -10,7 +10,7 @@ import obspy
 import pytest
 
 from pipeline.motions import MotionError
-from pipeline.motions.formats import FormatError, header_facts
+from pipeline.motions.formats import FormatError, header_facts, trace_headers
 from pipeline.motions.reading import open_traces
 from tests.motions.formats import national
 from tests.motions.formats import specimens as hand
@@ -241,3 +241,37 @@ def test_the_scale_of_geocsv_is_of_counts_and_of_an_acceleration_alone(unit, sca
     assert trace.stats.kouros.si_factor == pytest.approx(factor)
     assert ("213807 counts for 1 m/s2" in trace.stats.kouros.get("notes", "")) == (factor == 1.0 / 213807.0)
     assert abs(trace.data - hand.tone()).max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("said", "azimuth"), [("N129E", 129.0), ("N 155 E", 155.0), ("N360E", 0.0), ("N361E", "N361E"), ("35°", 35.0)]
+)
+def test_azimuths_beyond_a_right_angle(said, azimuth):
+    """As PESMOS and ITSAK write the second component."""
+    assert trace_headers.orientation(said) == azimuth
+
+
+@pytest.mark.parametrize(("peak", "fits"), [("50.0", True), ("98.0", True), ("512.3", False)])
+def test_the_peak_of_a_table_is_that_of_one_of_its_columns(tmp_path, peak, fits):
+    rows = [f"{100 * a:.3f} {-50 * a:.3f} {25 * a:.3f}" for a in hand.tone()]
+    head = ["Station: ABC", "Sampling rate: 100 Hz", f"PGA: {peak} cm/s2", "Unit: cm/s2", "NS EW UD"]
+    (tmp_path / "a.txt").write_text("\n".join([*head, *rows, ""]))
+    if fits:
+        assert len(obspy.read(str(tmp_path / "a.txt"))) == 3
+    else:
+        with pytest.raises(FormatError, match=r"line 3: says a peak acceleration of 5\.123 m/s2"):
+            obspy.read(str(tmp_path / "a.txt"))
+
+
+@pytest.mark.parametrize("head", ["Time (s),NS (gal)", "Tiempo,NS (gal),EW (gal)\ns,gal,gal"])
+def test_times_that_are_printed_more_coarsely_than_their_step(tmp_path, head):
+    """200 samples a second in a sheet that shows hundredths; one sample less in the middle is no longer even."""
+    count = head.split("\n")[0].count("NS") + head.split("\n")[0].count("EW")
+    rows = [f"{0.005 * i:.2f}" + f",{a:.4f}" * count for i, a in enumerate(hand.tone(700))]
+    (tmp_path / "a.csv").write_text("\n".join([head, *rows, ""]))
+    (first, *_) = obspy.read(str(tmp_path / "a.csv"))
+    assert (first.stats.npts, first.stats.delta) == (700, 0.005)
+    for gone in (1, 2):
+        (tmp_path / "a.csv").write_text("\n".join([head, *rows[:350], *rows[350 + gone :], ""]))
+        with pytest.raises(Exception, match=r"even|known|step"):
+            obspy.read(str(tmp_path / "a.csv"))
