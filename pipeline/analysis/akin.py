@@ -32,6 +32,8 @@ _STEM = 2
 """Letters that must precede an ending such as *statuette."""
 _PLURAL = 6
 """Letters from which an e at the end may be that of a plural (Handschuhe): plane is no plan, and cane no can."""
+_NO_PLURALS = frozenset({"hermes", "fates", "cannes"})
+"""Names, folded, that look like plurals of the table's words: the god is no herm."""
 _RELATED = 4
 """Letters from which a word may be a plural or a small kind of another."""
 _HEAD = 5
@@ -65,6 +67,8 @@ def known(of: RuleTable, word: str) -> tuple[tuple[tuple[str, ...], str], ...]:
 def forms(word: str) -> tuple[str, ...]:
     """Return a word as it stands, then as the singulars that its ending allows in the languages of the table."""
     able = [word]
+    if word in _NO_PLURALS:
+        return (word,)
     if len(word) > 3:
         if word.endswith("ies"):
             able.append(word[:-3] + "y")
@@ -110,7 +114,8 @@ def akin(text: str, of: RuleTable) -> tuple[str, float]:
     shares: list[float] = []
 
     def base(found: re.Match[str]) -> str:
-        kin = None if known(of, found.group()) else _kin(found.group(), of)
+        own = known(of, found.group()) or found.group() in _materials()
+        kin = None if own else _kin(found.group(), of)
         if kin is None:
             return found.group()
         word, way = kin
@@ -120,6 +125,12 @@ def akin(text: str, of: RuleTable) -> tuple[str, float]:
     folded = fold(text)
     other = WORD.sub(base, folded)
     return ("", 0.0) if other == folded else (other, min(shares))
+
+
+@cache
+def _materials() -> frozenset[str]:
+    """Return the words for materials, folded: plaster is no small plášť, which is a cloak."""
+    return frozenset(fold(word) for row in table("materials") for word in row["words"].split("|"))
 
 
 def _kin(word: str, of: RuleTable) -> tuple[str, str] | None:

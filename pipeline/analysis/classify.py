@@ -18,7 +18,7 @@ from pipeline.analysis.mounts import MountGuess, mount_of
 from pipeline.analysis.object_class import TakenClass, class_of
 from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.scene_parameters import SceneParameters, material_of
-from pipeline.analysis.told import as_displayed, as_told, display_note, too_slender
+from pipeline.analysis.told import as_displayed, as_told, display_note, in_case, too_slender
 from pipeline.models import MODELS, model_named
 from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin, Scene, Support, too_thin
@@ -55,7 +55,8 @@ def _known_of(
     row = values.classes[taken.name]
     if house is None:
         return taken, row, NO_EFFECT, values
-    said = house.effect(item, row.name, as_told(item, row).support or row.support, mounts=WHEN_HELD in row.models)
+    mounts = WHEN_HELD in row.models or in_case(item, row)
+    said = house.effect(item, row.name, as_told(item, row).support or row.support, mounts=mounts)
     return taken, row, said, values
 
 
@@ -122,7 +123,7 @@ def _stance(item: Item, row: ObjectClass, words: str, values: AssumedValues, hou
     by_record = as_told(laid, row)
     taken = _held(by_record, words)
     support = taken.support or row.support
-    mount = mount_of(taken, row, house)
+    mount = mount_of(taken, row, house, cased=in_case(laid, row))
     shape = body(taken, row, words, support, mount, material_of(item, values))
     return _Stance(laid, by_record, taken, support, mount, shape)
 
@@ -149,10 +150,10 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     hanging = None if builder.hanging is None else builder.hanging.known
-    if stance.by_record.support is not stance.laid.support:
-        assumptions.insert(0, say.SUPPORT_TOLD(support=support.value))
-    elif mount is not None and mount.note:
+    if mount is not None and mount.note:
         assumptions.insert(0, mount.note)
+    elif stance.by_record.support is not stance.laid.support:
+        assumptions.insert(0, say.SUPPORT_TOLD(support=support.value))
     elif stance.by_record.support is None:
         phrase = say.SUPPORT(support=support.value, told=row.told)
         if stance.taken.support is not None:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from math import radians
+from math import hypot, radians
 
 from pipeline.analysis.house.effect import HouseEffect
 from pipeline.models.unanchored import UNANCHORED
@@ -39,6 +39,9 @@ LONG = 0.6
 
 A canoe of 5 m, 0.45 m high, stands in no showcase.
 """
+
+TALL = 0.6
+"""Height [m] from which its larger side counts too: a rocking horse of 1.5 m stands on no pedestal; judgement."""
 
 STANDS = (Support.FREESTANDING, Support.FASTENED, Support.ISOLATED)
 """How what bears on its furniture is held."""
@@ -181,13 +184,20 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
         named = (kind for kind in (Furniture.PEDESTAL, Furniture.SHELF) if _named(kind).search(case))
         kind = next(named, Furniture.SHOWCASE)
         return FurnitureGuess(kind, Origin.DERIVED, f"for its record names the case or plinth {case!r}")
-    long = 0.0 if hangs else LONG * max(item.width_m or 0.0, item.depth_m or 0.0)
-    row = _usual(object_class, support.value if hangs else STANDING, max(item.height_m or 0.0, long))
+    row = _usual(object_class, support.value if hangs else STANDING, _largest(item, hangs=hangs))
     about = "what stands" if row.object_class == ANY else object_class.replace("_", " ")
     from_ = f" from {row.taller_than:g} m on" if row.taller_than else ""
     about = WHAT_HANGS.get(support, about)
     words = f"assumed for: {about}{from_}, usual_furniture.csv; not recorded"
     return FurnitureGuess(row.furniture, Origin.ASSUMED, words, f"usual_furniture.csv ({row.source})")
+
+
+def _largest(item: Item, *, hangs: bool) -> float:
+    """Return what counts as a height [m] when it is guessed what a thing stands on or hangs from."""
+    height, side = item.height_m or 0.0, max(item.width_m or 0.0, item.depth_m or 0.0)
+    if hangs:
+        return height
+    return hypot(height, side) if height >= TALL else max(height, LONG * side)
 
 
 @cache

@@ -61,7 +61,7 @@ class MountGuess:
         return self.way in _UPRIGHT
 
 
-def mount_of(item: Item, row: ObjectClass, house: HouseEffect) -> MountGuess | None:
+def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = False) -> MountGuess | None:
     """Return how a thing is held.
 
     Parameters
@@ -72,6 +72,8 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect) -> MountGuess | N
         Its class.
     house : HouseEffect
         What house rules come to for it.
+    cased : bool
+        Whether it would hang by its class, and is in a case (`told.in_case`).
 
     Returns
     -------
@@ -82,16 +84,16 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect) -> MountGuess | N
     rows, told, words = mount_rows(), house.stated.get("mount"), told_by(item.displayed).mount
     # What leans does so whatever its class: a panel on an easel hangs no more.
     leans = words is Mount.LEANING and item.support is Support.FREESTANDING
-    if words is not None and (leans or item.support in (None, row.support)):
+    if words is not None and (leans or cased or item.support in (None, row.support)):
         return MountGuess(rows[words], Origin.MEASURED)
-    if WHEN_HELD not in row.models:
+    if WHEN_HELD not in row.models and not cased:
         return None
     if told is not None:
         return MountGuess(rows[Mount(str(told.value))], Origin.STATED)
     if words is Mount.UNKNOWN:
         # On a pin or rod: what carries it is told, and not whether that holds it.
         return MountGuess(rows[words], Origin.MEASURED)
-    if item.support is not None:
+    if item.support is not None and not cased:
         way = MOUNTED_BY.get(item.support)
         if way is None or (way is Mount.SECURED and item.section_width_m is not None):
             return None

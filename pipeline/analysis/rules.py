@@ -126,7 +126,7 @@ _SCULPTURES = frozenset(
 _OF_TECHNIQUE = re.compile(r"\b(?:carvings?|schnitzereien?|houtsnijwerk|talla|sculpte)\b")
 """What a museum may class things by that says only how they are made: bowls and baskets among its carvings."""
 _CARVED = ("bust", "relief")
-"""Classes of such kinds; a boot or a crown of marble stands as other sculpture does."""
+"""Classes of such kinds; a boot or a crown of marble stands as other sculpture does, and a chandelier hangs."""
 _MASK = re.compile(r"\*?(?:mas[kqc]|面|仮面)")
 _KINDS_ONLY = frozenset(
     {
@@ -144,9 +144,14 @@ _KINDS_ONLY = frozenset(
         ),
         *("ceramica", "keramiek", "ceramika", "keramika", "陶磁", "furniture", "mobel", "mobilier", "mobili"),
         *("mueble", "muebles", "meubel", "meubels", "mebel", "meble", "nabytek", "mobiliario"),
+        *("cast", "casts", "plaster cast", "plaster casts", "abguss", "gipsabguss", "moulage", "moulage en platre"),
+        *("calco", "calco in gesso", "vaciado", "vaciado en yeso", "gipsafgietsel", "odlew gipsowy", "sadrovy odlitek"),
     }
 )
-"""Object names, folded, that say no more than a classification does, and leave the title its say."""
+"""Object names, folded, that say no more than a classification does, and leave the title its say.
+
+A cast is what it was cast from: David is a statue, and the portal of Saint-Gilles part of a building.
+"""
 _BLANK = ("", "(not assigned)", "not assigned", "unclassified", "uncategorized", "unknown", "n/a", "none", "-")
 """Classifications that say nothing."""
 
@@ -263,7 +268,7 @@ def _narrows(title: RuleMatch, name: RuleMatch, item: Item) -> bool:
     lidded = kind.rpartition(" ")[2] in LIDS  # a copa con tapa is a copa still, where a pahar cu picior is a goblet
     longer = kind != thing and bool(thing) and (kind.endswith(thing) or (kind.startswith(f"{thing} ") and not lidded))
     carved = fold(item.object_name).strip() in _SCULPTURES and (
-        title.rule.object_class in _CARVED or bool(_MASK.match(title.word))
+        title.rule.object_class in _CARVED or title.rule.name == LIGHTS[1] or bool(_MASK.match(title.word))
     )
     return hangs or longer or carved
 

@@ -1,12 +1,15 @@
 """How a thing is held by what its record says besides: how it is displayed, its footing, furniture and isolator."""
 
+import re
 from dataclasses import replace
+from functools import cache
 from textwrap import shorten
 
 from pipeline.records import Furniture, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
-from pipeline.tables.held_rows import told_by
+from pipeline.tables.held_rows import told_by, words_for
+from pipeline.tables.rows import any_of
 from pipeline.tables.surface_rows import surfaces_in
 
 SLENDEREST = 9.0
@@ -18,6 +21,11 @@ _QUOTED = 80
 _ABOVE = (Support.HUNG, Support.SUSPENDED)
 
 _TO_STAND_ON = (Furniture.FLOOR, Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
+
+_IN_CASES = (Furniture.SHOWCASE, Furniture.SHELF)
+
+_CASES = ("case", "cases", "cabinet", "Schrank", "kast")
+"""Words that in a field for cases name one; elsewhere they may be of furniture that is shown."""
 
 
 def as_displayed(item: Item) -> Item:
@@ -90,13 +98,43 @@ def as_told(item: Item, row: ObjectClass) -> Item:
         return item
     if item.isolator.strip():
         return replace(item, support=Support.ISOLATED)
-    footing = item.base_width_m or item.base_depth_m or item.contact_polygon or item.tilt_angle_deg is not None
-    hangs = row.support in (Support.HUNG, Support.SUSPENDED)
-    stands = footing or (hangs and item.furniture in _TO_STAND_ON)
+    hangs = row.support in _ABOVE
+    stands = _footing(item) or (hangs and (item.furniture in _TO_STAND_ON or _names_case(item)))
     usual = row.support is Support.FREESTANDING and WHEN_HELD not in row.models
     if not stands or (usual and not too_slender(item)):
         return item
     return replace(item, support=Support.FREESTANDING)
+
+
+def in_case(item: Item, row: ObjectClass) -> bool:
+    """Say whether what hangs by its class is held by a mount in a case: its record names one.
+
+    A miniature, an icon or an enamelled plaque in "case 8" does not hang on the wall of the room.
+
+    Parameters
+    ----------
+    item : Item
+        The record, with what house rules say of its support.
+    row : ObjectClass
+        Its class.
+    """
+    if item.support is not None or item.hanging is not None or row.support is not Support.HUNG or _footing(item):
+        return False
+    return item.furniture in _IN_CASES or (item.furniture is None and _names_case(item))
+
+
+def _footing(item: Item) -> bool:
+    measured = item.base_width_m or item.base_depth_m or item.contact_polygon
+    return bool(measured) or item.tilt_angle_deg is not None
+
+
+def _names_case(item: Item) -> bool:
+    return bool(item.case) and _case_words().search(item.case) is not None
+
+
+@cache
+def _case_words() -> re.Pattern[str]:
+    return any_of([*_CASES, *(word for kind in _IN_CASES for word in words_for(kind))])
 
 
 def too_slender(item: Item) -> float:

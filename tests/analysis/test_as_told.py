@@ -130,3 +130,17 @@ def test_a_slab_that_is_made_fast_is_judged_as_thick_as_it_is() -> None:
     strapped = classify(replace(STELE, support=Support.FASTENED, base_width_m=0.6, base_depth_m=0.15, mass_kg=437.0))
     assert strapped.missing == ()
     assert strapped.parameters["section_modulus"].value == pytest.approx((0.95 * 0.15) ** 3 / 6.0)
+
+
+@pytest.mark.parametrize("case", ["case 8", "Vitrine 3", "case 10, shelf 2"])
+@pytest.mark.parametrize("name", ["miniature painting", "icon", "relief"])
+def test_what_would_hang_is_held_by_a_mount_where_its_record_names_a_case(name: str, case: str) -> None:
+    """It moves with the case, and nobody says how it is held there; "North wall" in that field names none."""
+    item = Item("5", "East", object_name=name, height_m=0.3, width_m=0.2, depth_m=0.02)
+    cased = classify(replace(item, case=case))
+    assert (cased.support, cased.mount, cased.missing) == (Support.FREESTANDING, Mount.UNKNOWN, ())
+    assert cased.furniture in (Furniture.SHOWCASE, Furniture.SHELF)
+    recorded = classify(replace(item, furniture=Furniture.SHOWCASE))
+    assert (recorded.support, recorded.mount) == (Support.FREESTANDING, Mount.UNKNOWN)
+    for hung in (item, replace(item, case="North wall"), replace(item, case=case, support=Support.HUNG)):
+        assert classify(hung).support is Support.HUNG

@@ -115,6 +115,25 @@ def test_every_object_has_furniture(support: Support, height: float | None) -> N
         assert guess.furniture in hung.get(support, set(Furniture) - {Furniture.WALL, Furniture.RAIL})
 
 
+@pytest.mark.parametrize(
+    ("name", "sizes", "kind"),
+    [
+        ("rocking horse", (1.15, 0.45, 1.5), Furniture.FLOOR),
+        ("doll's house", (1.92, 1.33, 0.61), Furniture.FLOOR),
+        ("ship model", (0.5, 1.2, 0.2), Furniture.PEDESTAL),
+        ("statue", (0.9, 0.4, 0.4), Furniture.PEDESTAL),
+        ("canoe", (0.45, 0.6, 5.0), Furniture.FLOOR),
+    ],
+)
+def test_what_is_as_large_as_a_person_stands_on_no_pedestal(
+    name: str, sizes: tuple[float, float, float], kind: Furniture
+) -> None:
+    """A pedestal is 0.3 to 0.8 m across (furniture.csv): a horse of 1.5 m stands on the floor or on a low block."""
+    height, width, depth = sizes
+    item = Item("1", "G", object_name=name, height_m=height, width_m=width, depth_m=depth)
+    assert furniture_kind(item) is kind
+
+
 def test_only_rows_that_say_so_leave_an_object_on_bare_ground() -> None:
     """A cabinet stands on the floor because a row of the table says it, and the scene names the table."""
     bare = [row for row in usual_furniture() if row.furniture is Furniture.FLOOR and not row.taller_than]

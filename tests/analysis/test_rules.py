@@ -194,3 +194,19 @@ def test_own_rules_that_cannot_be_used_are_named(text: str | bytes, message: str
     own.write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(TableError, match=message):
         with_own(own)
+
+
+@pytest.mark.parametrize(
+    ("name", "title", "taken"),
+    [
+        ("Plaster cast", "Trajan's Column", "object"),
+        ("Plaster cast", "David", "statue"),
+        ("Gipsabguss", "Bust of Caesar", "bust"),
+        ("Plaster cast", "Portal of Saint-Gilles", "mounted"),
+        ("Sculpture", "Chandelier", "chandelier"),
+        ("Plaster", "Hermes", "object"),
+    ],
+)
+def test_a_cast_is_what_it_was_cast_from(name: str, title: str, taken: str) -> None:
+    """Its name says only how it was made; and plaster is no small Czech cloak, nor Hermes several herms."""
+    assert decide(name, title, medium="plaster", height_m=2.0).rule.object_class == taken
