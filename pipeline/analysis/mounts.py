@@ -98,7 +98,9 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = 
         if way is None or (way is Mount.SECURED and item.section_width_m is not None):
             return None
         return MountGuess(rows[way], Origin.STATED if "held" in house.stated else Origin.MEASURED)
-    usual = next((one for one in rows.values() if one.kind == row.name), rows[Mount.UNKNOWN])
+    # Miniatures and plaques that are small enough lie in their case.
+    other = rows[Mount.LYING if cased and max(sizes_known(item).values(), default=LAID) < LAID else Mount.UNKNOWN]
+    usual = next((one for one in rows.values() if one.kind == row.name), other)
     if (usual.mount is Mount.LYING and _bulky(item)) or (usual.kind == "mounted" and _upright_by_itself(item)):
         usual = rows[Mount.STANDING]
     note = f"{say.MOUNT(mount=usual.title, told=row.told)}; {say.NOT_RECORDED()}"

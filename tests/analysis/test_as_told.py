@@ -140,6 +140,7 @@ def test_what_would_hang_is_held_by_a_mount_where_its_record_names_a_case(name: 
     cased = classify(replace(item, case=case))
     assert (cased.support, cased.mount, cased.missing) == (Support.FREESTANDING, Mount.UNKNOWN, ())
     assert cased.furniture in (Furniture.SHOWCASE, Furniture.SHELF)
+    assert classify(replace(item, case=case, height_m=0.06, width_m=0.05)).mount is Mount.LYING
     recorded = classify(replace(item, furniture=Furniture.SHOWCASE))
     assert (recorded.support, recorded.mount) == (Support.FREESTANDING, Mount.UNKNOWN)
     for hung in (item, replace(item, case="North wall"), replace(item, case=case, support=Support.HUNG)):
