@@ -56,7 +56,7 @@ catalogues: $(STAMP)  ## the languages that travel with Kouros get new phrases, 
 bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks
 
-soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed, two hundred museums changed eight times, every seed and every row that means harm, the image built and run
+soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed, two hundred museums changed eight times, every seed and every row that means harm, all tests with all of their samples, the image built and run
 	KOUROS_FUZZ_SECONDS=120 $(BIN)/python -m pytest --numprocesses 2 tests/motions/formats/test_fuzz.py -k damage
 	KOUROS_KILLS=50 $(BIN)/python -m pytest --numprocesses 2 tests/operations/test_interruptions.py -k kill
 	KOUROS_DAMAGES=1000 $(BIN)/python -m pytest tests/operations/test_damage.py
@@ -68,6 +68,7 @@ soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for
 	KOUROS_DRAWS=160 $(BIN)/python -m pytest tests/analysis/test_likelihood.py -k plain_monte_carlo
 	KOUROS_SEEDS=24 $(BIN)/python -m pytest tests/collection/test_known_rows.py tests/report/test_damaged_reports.py
 	KOUROS_HOSTILE=1000 $(BIN)/python -m pytest tests/security/test_hostile_collection.py
+	KOUROS_SOAK=1 $(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 	KOUROS_IMAGE=1 $(BIN)/python -m pytest -s tests/operations/test_containers.py
 
 # In environments of their own: what audits and what schedules must not decide which versions Kouros is tested with.

@@ -19,17 +19,18 @@ from urllib.parse import quote
 
 import pytest
 from filelock import FileLock
-from hypothesis import settings as examples
+from hypothesis import settings as trying
 
 from pipeline.execute.memory import RARELY
+from tests.soak import examples
 from tests.warm import NIGHTLY
 
 if TYPE_CHECKING:
     from pipeline.records import RunRecord
 
 # Machines that others share are slow at times: no example fails for that.
-examples.register_profile("kouros", deadline=None)
-examples.load_profile("kouros")
+trying.register_profile("kouros", deadline=None, max_examples=examples(100))
+trying.load_profile("kouros")
 
 SHARED = "KOUROS_TESTS_SHARED"
 """Names the folder of what all processes of a session have in common: it is the same whoever made it."""

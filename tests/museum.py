@@ -95,10 +95,11 @@ def with_tables(file: Path) -> None:
         shutil.copyfile(_tables(), file)
 
 
-def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief") -> Settings:
+def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief", *, furnished: bool = True) -> Settings:
     """A small museum of its own in a folder; only what it finds of motions it has in common with all others.
 
     site : a folder, made by `own_site` where it is missing and no other is named, or a bundled site by its name
+    furnished : what stands free is in furniture that nobody names: a dozen variants of each motion, half of a night
     """
     in_common(folder)
     if site == "brief" and not (folder / site).exists():
@@ -109,7 +110,7 @@ def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief") 
     file = folder / "kouros.toml"
     text = template(museum="Test", source="export.csv", mapping="mapping.toml", site=site)
     file.write_text(small(text), encoding="utf-8")
-    return load_settings(file)
+    return load_settings(file) if furnished else on_the_floor(folder)
 
 
 def small(settings: str) -> str:
@@ -193,7 +194,12 @@ def write_collection(folder: Path, objects: list[dict[str, str]]) -> None:
 
 
 def museum_of(
-    folder: Path, objects: list[dict[str, str]], *, own_charts: bool = False, threads: bool = False
+    folder: Path,
+    objects: list[dict[str, str]],
+    *,
+    own_charts: bool = False,
+    threads: bool = False,
+    furnished: bool = True,
 ) -> Settings:
     """A museum of rows such as those of `vases`, with a copy of the bundled site; one thread works unless all shall."""
     folder.mkdir(parents=True)
@@ -204,7 +210,7 @@ def museum_of(
     text = template(museum="Three rooms", source="collection.csv", mapping="kouros", site="site")
     (folder / "kouros.toml").write_text(few_samples(text) if threads else small(text), encoding="utf-8")
     own_site(folder)
-    return load_settings(folder / "kouros.toml")
+    return load_settings(folder / "kouros.toml") if furnished else on_the_floor(folder)
 
 
 def night(settings: Settings) -> Summary:

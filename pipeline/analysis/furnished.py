@@ -19,7 +19,6 @@ import numpy as np
 from pipeline.analysis.furniture import FurnitureFilter, LooseBody
 from pipeline.analysis.loose import passed_on
 from pipeline.analysis.model_runs import prepare
-from pipeline.analysis.response import trace
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.models.oscillator import OSCILLATOR
@@ -204,8 +203,9 @@ def _off_level(motion: Motion, floor: Motion, tilt: float) -> Motion:
     """
     if tilt == 0.0:
         return motion
-    path = trace("sliding", motion, friction_static=_slippery(floor)[0])
-    x, y = (float(path[name].iloc[-1]) for name in ("u_x", "u_y"))
+    given = {"friction_static": _slippery(floor)[0], "friction_kinetic": np.nan, "directions": 2.0}
+    path = SLIDING.trace(motion.excitation(None, 0.0), given)  # type: ignore[misc]
+    x, y = (float(path[name][-1]) for name in ("u_x", "u_y"))
     size = float(np.hypot(x, y))
     # What rests all the while leans as well as it may.
     way = (1.0, 0.0) if size == 0.0 else (-x / size, -y / size)

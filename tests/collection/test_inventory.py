@@ -32,6 +32,7 @@ from pipeline.collection.reading import Reading, Rejected
 from pipeline.collection.record import CHOICES, KINDS, NUMBER_LIMIT
 from pipeline.records import Item, Origin, Problem, Provenance
 from tests.museum import carnegie
+from tests.soak import examples
 
 # What `read_items` lets through: no NUL, no halves of surrogate pairs, no negative zero, nothing infinite.
 _TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=60)
@@ -90,7 +91,7 @@ def engine(shared: Engine) -> Engine:
 
 
 @given(items=ITEMS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_items_come_back_as_they_were_written(shared: Engine, items: list[Item]) -> None:
     replace_inventory(shared, made(items), shrink_limit=1.0)
     back = read_inventory(shared)

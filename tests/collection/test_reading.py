@@ -24,6 +24,7 @@ from pipeline.collection.reading import NOWHERE, Reading, read_items
 from pipeline.collection.sources.delimited import FIELD_LIMIT
 from pipeline.records import Item, Origin, Provenance, Support
 from tests import museum
+from tests.soak import examples
 
 from .conftest import HEADER, MAPPING, Read, one
 
@@ -124,7 +125,7 @@ def test_masses_beyond_the_ends(mass: str, read: Read) -> None:
 
 
 @given(st.decimals(min_value="0.02", max_value="1900", places=4, allow_nan=False, allow_infinity=False))
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(50), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_lengths_are_the_nearest_double_of_the_exact_product(read: Read, inches: object) -> None:
     item = one(read(f"{HEADER}A1,Hall,Vase,{inches},\n"))
     assert item.height_m == float(Fraction(str(inches)) * Fraction(127, 5000))
@@ -338,7 +339,7 @@ def test_line_numbers_count_lines_and_rows_count_objects(read: Read) -> None:
 
 
 @given(st.lists(st.text('ab,"\n\r;\0\x1cé', max_size=30), min_size=1, max_size=12))
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(150), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_every_row_is_accounted_for_in_any_file(read: Read, lines: list[str]) -> None:
     """The fixture asserts rows == items + rejected; the good last row is there whatever stands above it."""
     reading = read(HEADER + "\n".join(lines) + f"\n{GOOD.replace('B1', 'LAST')}")

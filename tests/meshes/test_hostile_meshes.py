@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from pipeline.meshes import reading, scan_object
 from pipeline.meshes.reading import MeshError
+from tests.soak import examples
 
 CORNERS = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
 TETRAHEDRON = f"{CORNERS}f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
@@ -85,7 +86,7 @@ WHOLE = {kind: trimesh.creation.box((0.2, 0.1, 0.4)).export(file_type=kind) for 
 
 
 @given(kind=st.sampled_from(sorted(WHOLE)), data=st.data())
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(60), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_whatever_bytes_are_damaged_it_is_a_scan_or_an_error(tmp_path: Path, kind: str, data: st.DataObject) -> None:
     whole = WHOLE[kind]
     damaged = bytearray(whole if isinstance(whole, bytes) else whole.encode())

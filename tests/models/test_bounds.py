@@ -18,6 +18,7 @@ from pipeline.cli.commands import FIDELITIES as OFFERED
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import G
 from pipeline.resources import resource
+from tests.soak import some
 
 pytestmark = pytest.mark.slow_file
 
@@ -85,7 +86,7 @@ def enclosed(bound: pd.DataFrame, reference: pd.DataFrame, name: str) -> None:
             assert (want[told] <= got[told] + ROUNDING * np.abs(want[told])).all(), quantity.name
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", some(range(30), 10))
 @pytest.mark.parametrize("name", BOUNDED)
 def test_the_reference_lies_between_the_bounds(name: str, seed: int) -> None:
     """Random motions and objects, along an angle, in two directions, and in every direction where none is given."""
@@ -224,14 +225,14 @@ def test_a_block_released_from_a_tilt_is_not_at_rest() -> None:
 
 
 def test_the_stress_of_every_direction() -> None:
-    """Along one angle the bound is the stress; over all of them, a sweep by 0.1 degrees is met within 1 %."""
+    """Along one angle the bound is the stress; over all of them, a sweep by half a degree is met within 1 %."""
     motion = random_motion(3, n=300)
     along = respond("stress", motion, fidelity="bound", angle=20.0, **VALID["stress"]).iloc[0]
     exact = respond("stress", motion, angle=20.0, **VALID["stress"]).iloc[0]
     assert along["low"] == along["high"] == exact["tension"]
     assert along["shear"] == exact["shear"]
     row = respond("stress", motion, fidelity="bound", angle=None, **VALID["stress"]).iloc[0]
-    sweep = [respond("stress", motion, angle=k / 10, **VALID["stress"])["tension"][0] for k in range(1800)]
+    sweep = [respond("stress", motion, angle=k / 2, **VALID["stress"])["tension"][0] for k in range(360)]
     assert 0.99 * min(sweep) <= row["low"] <= min(sweep)
     assert max(sweep) <= row["high"] <= 1.0001 * max(sweep)
 

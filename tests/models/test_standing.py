@@ -22,6 +22,7 @@ from pipeline.models.standing import required, standing_bodies, tilt_ratios
 from pipeline.motions import read_motion
 from pipeline.quantities import Array, G
 from pipeline.resources import resource
+from tests.soak import examples
 
 CASES: list[dict[str, Any]] = json.loads(standing_truth.FILE.read_text(encoding="utf-8"))
 GIVEN = (
@@ -159,7 +160,7 @@ def test_a_landing_that_sticks_is_housners(alpha: float, mu: float) -> None:
     assert held(0.0, -2.0 * b, b, -h, 1.0 / 3.0) == pytest.approx((px, py), rel=1e-12)
 
 
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=examples(200))
 @given(
     v=st.floats(-3.0, 3.0),
     w=st.floats(0.01, 3.0),

@@ -20,7 +20,7 @@ pytestmark = [
     pytest.mark.slow_file,
 ]
 
-OBJECTS = vases(galleries=8, each=2)
+OBJECTS = vases(galleries=4, each=2)
 
 
 @pytest.fixture(scope="module")
@@ -34,9 +34,9 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
 
 @pytest.fixture
 def shared(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Four batches of about four objects, and others do the work whatever its size."""
+    """Four batches of two objects, and others do the work whatever its size."""
     for limit in ("BATCH", "WHOLE"):
-        monkeypatch.setattr(scheduler, limit, 4)
+        monkeypatch.setattr(scheduler, limit, 2)
     for module in (scheduler, staff):
         monkeypatch.setattr(module, "FEW", 0)
     monkeypatch.setattr(staff, "SHOWN", 0)

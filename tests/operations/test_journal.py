@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from pipeline.operations.event_log import journal, note
 from pipeline.operations.secrets import hider
 from pipeline.settings import Logs, Settings
+from tests.soak import examples
 
 HOSTILE = '\x1b[2J\u202e"\n{"event": "forged"}\r\u2028\ud800'
 
@@ -51,7 +52,7 @@ def test_a_line_says_when_what_and_how_grave(tmp_path: Path) -> None:
     assert (second["level"], second["event"]) == ("error", "hook.failed")
 
 
-@trying(deadline=None, max_examples=100)
+@trying(deadline=None, max_examples=examples(100))
 @given(st.dictionaries(st.text(), st.text() | st.floats() | st.integers() | st.lists(st.text()), max_size=4))
 def test_whatever_is_noted_is_one_line_that_reads_back(fields: dict[str, Any]) -> None:
     from pipeline.operations.event_log import _FIELDS, _LineFormatter

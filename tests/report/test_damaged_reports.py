@@ -92,7 +92,7 @@ def longer(data: bytes, chance: Random) -> bytes:
     return data + chance.randbytes(chance.randrange(1, 99))
 
 
-SEEDS = int(os.environ.get("KOUROS_SEEDS", "8"))
+SEEDS = int(os.environ.get("KOUROS_SEEDS", "4"))
 """Files that each kind of damage is done to; `make soak` takes 24."""
 
 DAMAGES: tuple[Callable[[bytes, Random], bytes], ...] = (flip, digit, zeros, cut, longer)

@@ -30,6 +30,7 @@ from tests.operations.conftest import environment
 from tests.operations.conftest import museum as museum  # noqa: PLC0414 - fixtures
 from tests.operations.conftest import shaking as shaking  # noqa: PLC0414
 from tests.report.conftest import report as report  # noqa: PLC0414
+from tests.soak import examples
 from tests.warm import kouros_process
 
 pytestmark = pytest.mark.slow_file
@@ -75,7 +76,7 @@ def test_nothing_that_is_stored_is_code() -> None:
     assert set(found) == KNOWN.keys()
 
 
-@trying(deadline=None, max_examples=500)
+@trying(deadline=None, max_examples=examples(500))
 @given(st.text(max_size=300), st.text(max_size=300))
 def test_a_name_of_a_file_is_a_slug_and_a_hash_whatever_a_gallery_is_called(first: str, second: str) -> None:
     """Never a folder, never a reserved name, never longer than a file system takes, and no two alike."""

@@ -35,6 +35,7 @@ from pipeline.store.migrate import upgrade
 from pipeline.store.results import DamagedRunError
 from pipeline.store.runs import changes_since, compare_runs
 from pipeline.store.tables import PAGE, RESULT, RUN
+from tests.soak import examples
 from tests.store.run_samples import assessment, finding, motion, run, save_run
 
 ACTS = Brief(State.ACT, "", "room", "More room")
@@ -158,7 +159,7 @@ def _empty(engine: Engine) -> None:
             connection.execute(delete(one))
 
 
-@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow])
 @given(before=_RUN, after=_RUN)
 def test_changes_equal_a_plain_comparison(
     sqlite: Engine, before: dict[str, dict[tuple[str, str], Verdict]], after: dict[str, dict[tuple[str, str], Verdict]]

@@ -16,6 +16,7 @@ from pipeline.resources import resource
 from pipeline.store import codec
 from pipeline.store.schema import decision_schema, finding_schema
 from pipeline.store.tables import DECISION, METADATA
+from tests.soak import examples
 from tests.store.run_samples import finding, values_of
 
 NAMES = {field.name for field in fields(Finding)}
@@ -49,7 +50,7 @@ def test_the_published_file_is_the_derived_schema() -> None:
     jsonschema.Draft202012Validator.check_schema(published)
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(values_of(Finding))
 def test_every_finding_satisfies_the_schema(record: Finding) -> None:
     exported = json.loads(codec.to_json(Finding, record)) | {"run": "2031-05-01"}
@@ -74,7 +75,7 @@ def test_the_decision_has_its_columns_and_its_published_schema() -> None:
     jsonschema.Draft202012Validator.check_schema(published)
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(values_of(Decision))
 def test_every_decision_satisfies_the_schema(record: Decision) -> None:
     exported = json.loads(codec.to_json(Decision, record))

@@ -20,6 +20,7 @@ from pipeline.store.pruning import remove_runs
 from pipeline.store.results import anonymous, damaged, encode, keep
 from pipeline.store.runs import commit_run, latest_run_id, list_runs, load_head, load_run
 from pipeline.store.tables import PAGE, RESULT, RUN, RUN_CHART, RUN_MOTION, RUN_PAGE
+from tests.soak import examples
 from tests.store.run_samples import RUNS, assessment, finding, motion, run, save_run
 
 TABLES = (RUN, RUN_MOTION, RUN_CHART, RUN_PAGE, PAGE, RESULT)
@@ -36,7 +37,7 @@ def rows(engine: Engine) -> dict[str, int]:
 NOTHING = dict.fromkeys((table.name for table in TABLES), 0)
 
 
-@settings(deadline=None, max_examples=40, suppress_health_check=list(HealthCheck))
+@settings(deadline=None, max_examples=examples(40), suppress_health_check=list(HealthCheck))
 @given(record=RUNS)
 def test_a_run_comes_back_exactly(engine: Engine, record: RunRecord) -> None:
     with engine.begin() as connection:

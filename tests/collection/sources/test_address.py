@@ -15,6 +15,7 @@ from sqlalchemy import make_url, text
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.address import expand_secrets
+from tests.soak import examples
 
 from .conftest import Museum
 
@@ -50,7 +51,7 @@ def test_addresses_that_cannot_be_expanded() -> None:
         assert word not in "".join(traceback.format_exception(caught.value))
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(st.text(st.characters(exclude_categories=["Cs"]), min_size=6, max_size=30))
 def test_no_password_is_ever_in_a_message(password: str) -> None:
     address = expand_secrets("mysql://reader:${P}@host/db?ssl_key=${P}", {"P": password})

@@ -15,6 +15,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources import lido, xml_records
 from pipeline.collection.sources.lido import COLUMNS, read_records
 from pipeline.collection.sources.rows import Row
+from tests.soak import examples
 
 from .lido_files import concept, element, measured, measurements, record, wrap
 
@@ -326,7 +327,7 @@ def test_search_terms_are_not_names() -> None:
     assert one(record(classes=element("objectWorkTypeWrap", work)))["object_name"] == "Brunnen; fountain"
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(
     st.text(
         st.characters(exclude_categories=["Cc", "Cs", "Zs", "Zl", "Zp"], exclude_characters="\ufffe\uffff"), min_size=1
@@ -484,7 +485,7 @@ def test_records_are_forgotten_and_large_files_read() -> None:
     assert max(held) < 50
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(st.data())
 def test_a_damaged_file_is_refused_or_read(data: st.DataObject) -> None:
     whole = bytearray(wrap(record(sizes=measurements(measured("height", "1"))), record(number="B")))

@@ -22,6 +22,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources import workbook
 from pipeline.collection.sources.rows import Row, as_text
 from pipeline.collection.sources.xlsx import read_sheet
+from tests.soak import examples
 
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 SHEET = "xl/worksheets/sheet1.xml"
@@ -113,7 +114,7 @@ VALUES = st.one_of(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.lists(st.lists(VALUES, min_size=3, max_size=3), min_size=1, max_size=5))
 def test_values_come_back_as_the_same_texts(table: list[list[Any]]) -> None:
     """What as_text makes of the values themselves is the truth; error texts such as "#N/A" are errors to a sheet."""
@@ -439,7 +440,7 @@ def test_a_strict_workbook_is_refused_with_the_remedy() -> None:
 DAMAGED = book([["a", "b"], ["1", 2.5], ["x", "=A1"]], lambda page: page.merge_cells("A2:A3")).getvalue()
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(st.data())
 def test_a_damaged_workbook_is_refused_or_read(data: st.DataObject) -> None:
     """Bytes changed or cut anywhere: rows, or one clear error; nothing else ever comes out."""
@@ -451,7 +452,7 @@ def test_a_damaged_workbook_is_refused_or_read(data: st.DataObject) -> None:
     assert isinstance(seen, list) or seen.startswith("museum.xlsx")
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(st.data())
 def test_a_damaged_sheet_is_refused_or_read(data: st.DataObject) -> None:
     part = data.draw(st.sampled_from([SHEET, "xl/sharedStrings.xml", "xl/workbook.xml", "xl/styles.xml"]))
