@@ -72,9 +72,9 @@ def inches(metres: float, *, up: bool) -> str:
 
 
 def _weight(value: float, *, up: bool) -> str:
-    """Write a weight with two significant digits, the last one rounded up if asked; a found mass of a hundred with three.
+    """Write a weight with two significant digits, the last one up if asked; from a hundred on with three if not.
 
-    What is asked of a mount rests on a mass that hardly anybody has weighed: a third digit would claim what is not known.
+    What is asked of a mount rests on a mass that hardly anybody has weighed: a third digit would claim too much.
     """
     if value <= 0.0:
         return significant(value, 2)

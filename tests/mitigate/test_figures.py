@@ -1,4 +1,4 @@
-"""The figures of what is advised, beside integrations of another kind: scipy's DOP853 with events, and statics by hand."""
+"""The figures of what is advised, beside other integrations: scipy's DOP853 with events, and statics by hand."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def slid(motion: Motion, friction: float) -> float:
 
 
 def swung(motion: Motion, length: float) -> float:
-    """How far the centre of a spherical pendulum gets from the line through its hook [m]: Cartesian, with its string."""
+    """How far the centre of a spherical pendulum gets from the line through its hook [m]: Cartesian."""
     t, x, y, n = pushes(motion)
 
     def rates(at: float, s: Array) -> Array:
