@@ -22,14 +22,14 @@ from filelock import FileLock
 from hypothesis import settings as trying
 
 from pipeline.execute.memory import RARELY
-from tests.soak import examples
+from tests.soak import SOAK, examples
 from tests.warm import NIGHTLY
 
 if TYPE_CHECKING:
     from pipeline.records import RunRecord
 
 # Machines that others share are slow at times: no example fails for that.
-trying.register_profile("kouros", deadline=None, max_examples=examples(100))
+trying.register_profile("kouros", deadline=None, max_examples=examples(100), derandomize=not SOAK)
 trying.load_profile("kouros")
 
 SHARED = "KOUROS_TESTS_SHARED"

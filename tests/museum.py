@@ -95,11 +95,11 @@ def with_tables(file: Path) -> None:
         shutil.copyfile(_tables(), file)
 
 
-def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief", *, furnished: bool = True) -> Settings:
+def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief", *, furnished: bool = False) -> Settings:
     """A small museum of its own in a folder; only what it finds of motions it has in common with all others.
 
     site : a folder, made by `own_site` where it is missing and no other is named, or a bundled site by its name
-    furnished : what stands free is in furniture that nobody names: a dozen variants of each motion, half of a night
+    furnished : what stands free is in furniture that nobody names, not on the floor: variants, half of a night
     """
     in_common(folder)
     if site == "brief" and not (folder / site).exists():
@@ -199,7 +199,7 @@ def museum_of(
     *,
     own_charts: bool = False,
     threads: bool = False,
-    furnished: bool = True,
+    furnished: bool = False,
 ) -> Settings:
     """A museum of rows such as those of `vases`, with a copy of the bundled site; one thread works unless all shall."""
     folder.mkdir(parents=True)

@@ -35,7 +35,7 @@ def night(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A museum after a night."""
     folder = tmp_path_factory.mktemp("museum")
     synthesise("sine", ["amplitude=4", "frequency=1.5", "cycles=3"], folder / "shaking")
-    workspace(folder, site="shaking")
+    workspace(folder, site="shaking", furnished=True)
     assert say(folder, "run")[0] == 0
     return folder
 

@@ -120,7 +120,7 @@ def test_a_set_is_worked_on_once_and_shown_as_if_each_had_been(tmp_path: Path, a
 
 
 def test_of_a_changed_gallery_only_what_changed_is_worked_on(tmp_path: Path, assessed: list[str]) -> None:
-    settings = museum_of(tmp_path / "museum", vases(), furnished=False)
+    settings = museum_of(tmp_path / "museum", vases())
     night(settings)
     assessed.clear()
     objects = vases()
@@ -131,13 +131,13 @@ def test_of_a_changed_gallery_only_what_changed_is_worked_on(tmp_path: Path, ass
     # Titles are looked at to class objects.
     assert summary.fresh == 2
     assert sorted(assessed) == ["1.1", "1.2"]
-    fresh = museum_of(tmp_path / "fresh", objects, furnished=False)
+    fresh = museum_of(tmp_path / "fresh", objects)
     night(fresh)
     assert found(settings) == found(fresh)
 
 
 def test_under_other_shaking_or_other_settings_nothing_is_taken_over(tmp_path: Path, assessed: list[str]) -> None:
-    settings = museum_of(tmp_path / "museum", vases(), furnished=False)
+    settings = museum_of(tmp_path / "museum", vases())
     night(settings)
     assessed.clear()
     manifest = settings.home / "site" / "manifest.toml"
@@ -235,7 +235,7 @@ def test_a_kind_is_what_the_record_says_but_for_what_is_the_objects_own() -> Non
 
 def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> None:
     """Whoever works on which sheets: what is looked up in a chart must not hang on that."""
-    settings = museum_of(tmp_path / "walls", vases(1, 1), furnished=False)
+    settings = museum_of(tmp_path / "walls", vases(1, 1))
     workspace = open_workspace(settings)
 
     def names(count: int) -> set[float]:

@@ -33,7 +33,7 @@ ROWS = [SHOWN, "2,Cellar,Vase,1.3,0.2,0.2,no", "3,Cellar,Bowl,,,,no", "4,,Vase,1
 
 def museum(folder: Path, rows: list[str] = ROWS, *, stores: bool = False) -> Settings:
     folder.mkdir(exist_ok=True)
-    workspace(folder, [], furnished=False)
+    workspace(folder, [])
     head = "object_number,gallery,title,height_m,width_m,depth_m,on_display"
     (folder / "export.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
     said = MAPPING + '[columns.on_display]\ncolumn = "on_display"\n'
@@ -181,7 +181,7 @@ def test_no_stored_object_is_told_to_be_taken_off_display() -> None:
 
 def test_where_no_column_says_what_is_on_display_that_is_said(tmp_path: Path) -> None:
     rows = ["1,Hall,Vase,1.2,0.2,0.2", "2,Hall,Plate,0.03,0.3,0.3"]
-    summary = run(workspace(tmp_path, rows, furnished=False), SILENT)
+    summary = run(workspace(tmp_path, rows), SILENT)
     said = "o column says what is on display: all 2 objects are taken to be"
     assert said in words(summary)
     assert said in "\n".join(summary_lines(summary))

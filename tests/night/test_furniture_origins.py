@@ -20,7 +20,7 @@ def test_a_night_counts_where_it_is_known_from_what_objects_stand_on(tmp_path: P
     """Six vases: one by its record, which a rule does not overrule, one by that rule, four by what is usual."""
     rows = vases(3, 2)
     rows[2]["furniture"] = "pedestal"
-    museum_of(tmp_path / "museum", rows)
+    museum_of(tmp_path / "museum", rows, furnished=True)
     file = tmp_path / "museum" / "kouros.toml"
     file.write_text(file.read_text(encoding="utf-8") + RULE, encoding="utf-8")
     summary = night(load_settings(file))

@@ -65,7 +65,7 @@ def test_the_exports_say_what_the_store_says(demo_folder: Path, demo_record: Run
 def test_a_night_with_bad_input_ends_and_names_it(tmp_path: Path) -> None:
     """Negative, absurd (9,600 inches) and missing dimensions, a hostile title: findings, never a crash."""
     absurd = ["4,B,Vase,-1.2,,", "5,B,Vase,243.84,,", "6,B,Vase,much,,", "7,,Vase,1.2,0.2,0.2"]
-    summary = run(workspace(tmp_path, ROWS + absurd, furnished=False), SILENT)
+    summary = run(workspace(tmp_path, ROWS + absurd), SILENT)
     assert (summary.objects, summary.cannot) == (7, 4)
     assert summary.missing["height"] == 4
     record = load_run(open_database(tmp_path / "kouros.sqlite"))
@@ -81,7 +81,7 @@ def test_a_night_with_bad_input_ends_and_names_it(tmp_path: Path) -> None:
 
 
 def test_an_unchanged_night_changes_nothing_and_keeps_the_old_report(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, furnished=False)
+    settings = workspace(tmp_path)
     first = run(settings, SILENT)
     second = run(settings, SILENT)
     assert second.changes is not None
@@ -96,9 +96,9 @@ def test_an_unchanged_night_changes_nothing_and_keeps_the_old_report(tmp_path: P
 
 
 def test_a_changed_object_is_named(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, furnished=False)
+    settings = workspace(tmp_path)
     run(settings, SILENT)
-    workspace(tmp_path, [ROWS[0], "2,B,Plate,0.03,0.1,0.1", ROWS[2], "9,B,Vase,1.2,0.2,0.2"], furnished=False)
+    workspace(tmp_path, [ROWS[0], "2,B,Plate,0.03,0.1,0.1", ROWS[2], "9,B,Vase,1.2,0.2,0.2"])
     changes = run(settings, SILENT).changes
     assert changes is not None
     assert [p.object_number for p in changes.added] == ["9"]
@@ -107,7 +107,7 @@ def test_a_changed_object_is_named(tmp_path: Path) -> None:
 
 def test_a_refused_motion_keeps_the_last_report(tmp_path: Path) -> None:
     site = own_site(tmp_path)
-    settings = workspace(tmp_path, site="site", furnished=False)
+    settings = workspace(tmp_path, site="site")
     first = run(settings, SILENT)
     record = site / "CI.CLC..HNN.mseed"
     record.write_bytes(record.read_bytes()[:30_001])
@@ -119,9 +119,9 @@ def test_a_refused_motion_keeps_the_last_report(tmp_path: Path) -> None:
 
 
 def test_a_shrunken_source_publishes_nothing(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, furnished=False)
+    settings = workspace(tmp_path)
     first = run(settings, SILENT)
-    workspace(tmp_path, ROWS[:1], furnished=False)
+    workspace(tmp_path, ROWS[:1])
     with pytest.raises(ShrunkError, match="67% fewer"):
         run(settings, SILENT)
     assert first.report is not None
@@ -129,7 +129,7 @@ def test_a_shrunken_source_publishes_nothing(tmp_path: Path) -> None:
 
 
 def test_a_part_of_the_collection_does_not_become_the_latest_report(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, furnished=False)
+    settings = workspace(tmp_path)
     whole = run(settings, SILENT)
     part = run(settings, SILENT, Selection(galleries=("B",)))
     assert part.objects == 2
@@ -144,19 +144,19 @@ def test_a_part_of_the_collection_does_not_become_the_latest_report(tmp_path: Pa
 
 
 def test_an_unknown_gallery_is_an_error_that_helps(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, ["1,Hall of Sculpture,Vase,1.2,0.2,0.2"], furnished=False)
+    settings = workspace(tmp_path, ["1,Hall of Sculpture,Vase,1.2,0.2,0.2"])
     with pytest.raises(UsageError, match=r"no gallery 'Hall of Skulpture' .* did you mean 'Hall of Sculpture'"):
         run(settings, SILENT, Selection(galleries=("Hall of Skulpture",)))
 
 
 def test_a_second_run_waits_for_nobody(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, furnished=False)
+    settings = workspace(tmp_path)
     with locked(settings), pytest.raises(LockedError, match="another run holds"):
         run(settings, SILENT)
 
 
 def test_a_report_is_rendered_again_from_the_store_byte_for_byte(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, site="site", furnished=False)
+    settings = workspace(tmp_path, site="site")
     site = own_site(tmp_path)
     first = run(settings, SILENT)
     shutil.rmtree(site)  # nothing is computed again
@@ -171,7 +171,7 @@ def test_a_report_is_rendered_again_from_the_store_byte_for_byte(tmp_path: Path)
 
 def test_a_swapped_motion_moves_verdicts_and_is_named(tmp_path: Path) -> None:
     site = own_site(tmp_path)
-    settings = workspace(tmp_path, site="site", furnished=False)
+    settings = workspace(tmp_path, site="site")
     run(settings, SILENT)
     manifest = site / "manifest.toml"
     manifest.write_text(manifest.read_text(encoding="utf-8").replace("scale_to_pga_g = 0.7", "scale_to_pga_g = 0.004"))
@@ -200,7 +200,7 @@ def test_bad_settings_name_the_key(tmp_path: Path, text: str, message: str) -> N
 
 
 def test_secrets_come_from_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    settings = workspace(tmp_path, furnished=False)
+    settings = workspace(tmp_path)
     monkeypatch.setenv("KOUROS_DATABASE", "postgresql://user:s3cr3t@localhost/kouros")
     assert settings.database == "postgresql://user:s3cr3t@localhost/kouros"
     assert "s3cr3t" not in repr(settings)
@@ -208,9 +208,9 @@ def test_secrets_come_from_the_environment(tmp_path: Path, monkeypatch: pytest.M
 
 def test_the_night_on_a_postgresql_server(tmp_path: Path, postgresql_url: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same museum gives the same findings through SQLite and through PostgreSQL."""
-    embedded = run(workspace(tmp_path, furnished=False), SILENT)
+    embedded = run(workspace(tmp_path), SILENT)
     monkeypatch.setenv("KOUROS_DATABASE", postgresql_url)
-    served = run(workspace(tmp_path, furnished=False), SILENT)
+    served = run(workspace(tmp_path), SILENT)
     other = load_run(open_database(postgresql_url), served.run_id)
     monkeypatch.delenv("KOUROS_DATABASE")
     one = load_run(open_database(tmp_path / "kouros.sqlite"), embedded.run_id)

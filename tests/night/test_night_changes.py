@@ -47,7 +47,7 @@ def database(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) ->
 
 
 def museum(folder: Path, rows: list[str] | None = None) -> Settings:
-    return workspace(folder, rows or ROWS, site="site")
+    return workspace(folder, rows or ROWS, site="site", furnished=True)
 
 
 def night(folder: Path) -> RunChanges:

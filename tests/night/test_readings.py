@@ -84,7 +84,7 @@ def said(settings: Settings, counts: dict[str, int]) -> Path:
 @pytest.fixture(scope="module")
 def museum(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """A museum whose export has two rows to refuse and two to doubt, after its first night."""
-    settings = workspace(tmp_path_factory.mktemp("museum"), BAD, furnished=False)
+    settings = workspace(tmp_path_factory.mktemp("museum"), BAD)
     toml = settings.home / "kouros.toml"
     plain = toml.read_text(encoding="utf-8").replace("shrink_limit = 0.2", "shrink_limit = 0.9")
     toml.write_text(plain.replace('survey = "auto"', "survey = false"), encoding="utf-8")
@@ -133,11 +133,11 @@ def test_a_night_that_reads_nothing_anew_or_only_what_changed_says_it_too(museum
 
 
 def test_after_a_return_it_is_that_of_the_version_returned_to(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, BAD, furnished=False)
+    settings = workspace(tmp_path, BAD)
     place = open_workspace(settings)
     import_collection(place, tmp_path / "export.csv", "mapping.toml", shrink_limit=0.9)
     first = account(place.engine)
-    workspace(tmp_path, GOOD, furnished=False)
+    workspace(tmp_path, GOOD)
     import_collection(place, tmp_path / "export.csv", "mapping.toml", shrink_limit=0.9)
     good = account(place.engine)
     assert good is not None
@@ -148,7 +148,7 @@ def test_after_a_return_it_is_that_of_the_version_returned_to(tmp_path: Path) ->
 
 
 def test_what_a_sheet_got_wrong_stays_until_a_sheet_mends_it(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, GOOD, furnished=False)
+    settings = workspace(tmp_path, GOOD)
     place = open_workspace(settings)
     import_collection(place, tmp_path / "export.csv", "mapping.toml", shrink_limit=0.9)
 
@@ -167,7 +167,7 @@ def test_what_a_sheet_got_wrong_stays_until_a_sheet_mends_it(tmp_path: Path) -> 
     found = {(d.object_number, d.field, d.message.split(": ")[0]) for d in doubts(place.engine, newest.id)}
     assert found == {("1", "mass_kg", "one.csv"), ("9", "object_number", "one.csv"), ("", "object_number", "one.csv")}
     # The museum's next export does not make the sheet better; a sheet that has the number does.
-    workspace(tmp_path, [*GOOD, "3,B,Dish,0.1,0.2,0.2"], furnished=False)
+    workspace(tmp_path, [*GOOD, "3,B,Dish,0.1,0.2,0.2"])
     import_collection(place, tmp_path / "export.csv", "mapping.toml", shrink_limit=0.9)
     after = account(place.engine)
     assert after == replace(told, rows=3)
@@ -178,7 +178,7 @@ def test_what_a_sheet_got_wrong_stays_until_a_sheet_mends_it(tmp_path: Path) -> 
 
 def test_an_inventory_of_before_the_upgrade_is_not_called_whole(tmp_path: Path) -> None:
     """What an older Kouros imported: nothing was noted. Importing the same file again notes it, as no new version."""
-    settings = workspace(tmp_path, GOOD, furnished=False)
+    settings = workspace(tmp_path, GOOD)
     place = open_workspace(settings)
     import_collection(place, tmp_path / "export.csv", "mapping.toml", shrink_limit=0.9)
     with place.engine.begin() as connection:
@@ -204,7 +204,7 @@ def test_an_inventory_of_before_the_upgrade_is_not_called_whole(tmp_path: Path) 
 
 
 def test_a_database_is_no_other_source(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, [], furnished=False)
+    settings = workspace(tmp_path, [])
     museums = create_engine(f"sqlite:///{tmp_path / 'museum.sqlite'}")
     with museums.begin() as connection:
         connection.execute(text("CREATE TABLE things (object_number, gallery, title, height_m, width_m, depth_m)"))
@@ -280,7 +280,7 @@ def test_tens_of_thousands_of_doubts_make_no_heavy_page(tmp_path: Path) -> None:
 
 def test_what_stands_there_and_what_was_made_of_it(tmp_path: Path) -> None:
     """Refused, left out, doubted and used, taken by choice: each entry says which, with the museum's characters."""
-    settings = workspace(tmp_path, [], furnished=False)
+    settings = workspace(tmp_path, [])
     head = "object_number,gallery,title,height_m,width_m,depth_m,size,shown"
     rows = [
         "1,Hall,Vase,0.3,0.1,0.1,H 40 x W 10 x D 10 cm,yes",  # a text that contradicts its column
@@ -322,7 +322,7 @@ def test_what_stands_there_and_what_was_made_of_it(tmp_path: Path) -> None:
 
 
 def test_a_source_that_contradicts_itself_stops_the_night_and_leaves_all_as_it_was(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, [f"{n},A,Vase,1.2,0.2,0.2" for n in range(1, 31)], furnished=False)
+    settings = workspace(tmp_path, [f"{n},A,Vase,1.2,0.2,0.2" for n in range(1, 31)])
     mapping = tmp_path / "mapping.toml"
     text = mapping.read_text(encoding="utf-8")
     mapping.write_text(text + '[dimensions]\ncolumns = ["size"]\noptional = true\n', encoding="utf-8")

@@ -35,7 +35,7 @@ def results(settings: Settings) -> int:
 @pytest.fixture(scope="module")
 def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """A museum after its first night."""
-    made = museum_of(tmp_path_factory.mktemp("nights") / "museum", vases(), furnished=False)
+    made = museum_of(tmp_path_factory.mktemp("nights") / "museum", vases())
     assert night(made).fresh == 12
     return made
 
@@ -76,7 +76,7 @@ def test_one_changed_object_costs_only_itself_and_the_rest_is_taken_over(setting
     assert summary.changes is not None
     assert [change.object_number for change in summary.changes.inputs] == ["1.1"]
     # A first night of the same museum shows the same, row for row.
-    again = museum_of(tmp_path / "again", objects, furnished=False)
+    again = museum_of(tmp_path / "again", objects)
     other = night(again)
     assert found(settings) == found(again)
     assert summary.report is not None
@@ -104,7 +104,7 @@ def test_a_changed_motion_is_named_and_all_is_found_anew(settings: Settings) -> 
 
 def test_a_result_that_is_there_is_taken_up_by_a_run_that_was_cut_off(settings: Settings, tmp_path: Path) -> None:
     """What a run stored before it died needs not be found again, and the report is that of an undisturbed night."""
-    again = museum_of(tmp_path / "cut", vases(), furnished=False)
+    again = museum_of(tmp_path / "cut", vases())
     night(again)
     engine = open_database(again.database)
     with engine.begin() as connection:
@@ -121,7 +121,7 @@ def test_a_result_that_is_there_is_taken_up_by_a_run_that_was_cut_off(settings: 
 @pytest.mark.parametrize("damage", [{"found": b"damaged"}, {"outline": "[]"}, {"made": "2000-01-01"}, None])
 def test_a_result_that_is_damaged_or_lost_is_found_again(damage: dict[str, object] | None, tmp_path: Path) -> None:
     """Noticed where it is read: when its page is drawn again."""
-    made = museum_of(tmp_path / "damaged", vases(1, 4), furnished=False)
+    made = museum_of(tmp_path / "damaged", vases(1, 4))
     night(made)
     before = found(made)
     engine = open_database(made.database)
@@ -225,7 +225,7 @@ def test_what_is_stored_is_cut_by_count_in_the_order_of_its_numbers() -> None:
 def test_the_pages_of_a_cut_gallery_lead_to_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut at 12 instead of 1,000 objects, so that the test is quick."""
     monkeypatch.setattr(scheduler, "paged", partial(paged, most=12))
-    made = museum_of(tmp_path / "large", vases(galleries=1, each=30), furnished=False)
+    made = museum_of(tmp_path / "large", vases(galleries=1, each=30))
     summary = night(made)
     assert summary.report is not None
     folder = summary.report.parent
@@ -253,7 +253,7 @@ def test_a_page_whose_report_was_tampered_with_is_drawn_again(settings: Settings
 
 def test_one_changed_motion_runs_its_own_histories_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of two motions one changes: no history of the other is run again, and a first night would find the same."""
-    made = museum_of(tmp_path / "two", [{**vase, "furniture": "floor"} for vase in vases()], furnished=False)
+    made = museum_of(tmp_path / "two", [{**vase, "furniture": "floor"} for vase in vases()])
     file = made.home / "kouros.toml"
     file.write_text(file.read_text(encoding="utf-8").replace('fragility = "auto"', "fragility = false"), "utf-8")
     made = load_settings(file)

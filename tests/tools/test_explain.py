@@ -33,7 +33,7 @@ ROWS = [
 
 @pytest.fixture(scope="module")
 def museum(tmp_path_factory: pytest.TempPathFactory) -> Settings:
-    settings = workspace(tmp_path_factory.mktemp("museum"), ROWS, furnished=False)
+    settings = workspace(tmp_path_factory.mktemp("museum"), ROWS)
     run(settings, Console(quiet=True))
     return settings
 
@@ -95,7 +95,7 @@ def test_an_unknown_object_is_refused_with_close_ones(museum: Settings) -> None:
 
 def test_what_stands_on_an_installed_isolator_is_explained_as_the_night_judged_it(tmp_path: Path) -> None:
     """The isolator's own demand, and the object's own models on what it passes on; a reason steers no terminal."""
-    settings = workspace(tmp_path, ROWS, furnished=False)
+    settings = workspace(tmp_path, ROWS)
     run(settings, Console(quiet=True))
     words = ["isolator=generic 0.5 Hz, friction 0.05", "stroke_m=0.9"]
     wish = Wish("1", DecisionKind.INSTALLED, ["horizontal_isolator", *words], why="bought \x1b[31m in May", who="Ann")
@@ -151,7 +151,7 @@ def test_furniture_that_is_not_fastened_is_explained_as_the_night_judged_it(tmp_
 def test_what_an_object_counts_and_why_is_told(museum: Settings, tmp_path: Path) -> None:
     """80,000 at 20,000 for an object of class C is 4, and thrice that, as it is irreplaceable: stakes.csv."""
     assert "  worth    counts 2: nothing is recorded of its value" in explained(museum, "1").stdout.splitlines()
-    settings = workspace(tmp_path, ["1,A,Vase,1.2,0.2,0.2"], furnished=False)
+    settings = workspace(tmp_path, ["1,A,Vase,1.2,0.2,0.2"])
     file = tmp_path / "kouros.toml"
     file.write_text(file.read_text(encoding="utf-8").replace("value_per_c = 0.0", "value_per_c = 20000.0"), "utf-8")
     for name, more in (("export.csv", ",value,irreplaceable,on_loan"), ("mapping.toml", "")):
