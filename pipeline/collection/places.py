@@ -9,8 +9,8 @@ from pipeline.tables.held_rows import told_by, words_for
 from pipeline.tables.rows import any_of
 
 _SEPARATOR = re.compile(r"\s*[,;/>|]\s*|:\s+|\s+[-–—]\s+")
-_SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4})"
-"""What tells one case from the next: 3, 12b, A, IV."""
+_SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
+"""What tells one case from the next: 3, 12b, A, IV, FS."""
 _NUMBERED = ("case", "cases", "Schrank", "kast")
 """Words that name furniture only where a number follows."""
 

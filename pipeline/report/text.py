@@ -29,6 +29,15 @@ def plain(text: str) -> str:
     return " ".join(_BIDI.sub("", clean(text)).split())
 
 
+_BARE = re.compile(r"\S{1,6}")
+"""What is no more than the sign of a case, such as 3, 12b or IV."""
+
+
+def cased(text: str) -> str:
+    """Return what a case is called: "case 3" of a bare 3, and anything else, such as "vitrine 3", as it is."""
+    return f"{_('case')} {text}" if _BARE.fullmatch(text.strip()) else text
+
+
 def short(text: str, limit: int = 90) -> str:
     """Cut a long text at a word where possible, with an ellipsis.
 

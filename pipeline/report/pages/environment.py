@@ -16,7 +16,7 @@ from markupsafe import Markup, escape
 
 from pipeline.report.errors import ReportError
 from pipeline.report.language import Language, moment
-from pipeline.report.text import clean, count, escaped, plain
+from pipeline.report.text import cased, clean, count, escaped, plain
 from pipeline.resources import resource
 
 
@@ -150,6 +150,7 @@ def environment(language: Language | None = None) -> Environment:
     env.globals["_"] = lru_cache(maxsize=1024)(lambda text: Markup(phrases.gettext(text)))  # noqa: S704
     env.globals["language"] = spoken
     env.filters["plain"] = plain
+    env.filters["cased"] = cased
     env.filters["squeezed"] = _squeezed
     env.filters["thousands"] = count
     env.filters["moment"] = moment
