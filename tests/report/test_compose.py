@@ -9,7 +9,7 @@ from pipeline.report import ReportError, Units
 from pipeline.report.pages.ranking import urgency
 from pipeline.report.pages.since import since_view
 from pipeline.report.pages.views import State, StateCounts
-from pipeline.report.text import count, short, slug, words
+from pipeline.report.text import cased, count, short, slug, words
 
 from . import builder
 from .shown import shown
@@ -172,3 +172,11 @@ def test_a_gallery_without_a_name_is_said_to_have_none() -> None:
         "3": "no gallery recorded → East",
         "4": "East → no gallery recorded",
     }
+
+
+@pytest.mark.parametrize(
+    ("case", "called"),
+    [("3", "case 3"), ("IV", "case IV"), ("case 15", "case 15"), ("vitrine 3", "vitrine 3"), ("North wall", "North wall")],
+)
+def test_a_case_is_called_so_once(case: str, called: str) -> None:
+    assert cased(case) == called

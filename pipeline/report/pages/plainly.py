@@ -90,7 +90,7 @@ def brief_measure(advice: Recommendation, units: Units) -> str:
     advice, units
         As of `plain_measure`.
     """
-    told, _numbers = _advised(advice, units, of_weight=times_weight(advice))
+    told, _numbers = _advised(advice, units, brief=True, of_weight=times_weight(advice))
     if NAMED_FIRST in advice.sentence:
         told.append(_("Before that, say which of the kinds named in its entry it is."))
     elif weighed_first(advice):
@@ -113,9 +113,12 @@ def weighed_first(advice: Recommendation) -> bool:
     return any(one in advice.sentence for one in (HEAVIEST, AT_BEST, SIZED))
 
 
-def _advised(advice: Recommendation, units: Units, of_weight: str = "") -> tuple[list[str], dict[str, str]]:
+def _advised(
+    advice: Recommendation, units: Units, *, brief: bool = False, of_weight: str = ""
+) -> tuple[list[str], dict[str, str]]:
     """Return the sentences of what is done, and the numbers of the measure as people write them.
 
+    brief : whether why an engineer is needed is left to the entry
     of_weight : what stands for the force, "" for the weight that it is
     """
     write = by_hand(units)
@@ -128,7 +131,7 @@ def _advised(advice: Recommendation, units: Units, of_weight: str = "") -> tuple
     if UPPER_FIRST in advice.sentence:
         told.append(_("First fix each upper body to the one that it stands on."))
     if ENGINEER in advice.sentence:
-        told.append(said(ENGINEER))
+        told.append(_("Have an engineer design it.") if brief else said(ENGINEER))
     phrase = _PHRASES[advice.measure]() if advice.measure in _PHRASES else ""
     try:
         told.append(phrase % numbers if phrase else f"{said(clean(advice.title))}.")
