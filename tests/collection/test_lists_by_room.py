@@ -55,6 +55,12 @@ def test_a_heading_with_nothing_below_it_is_told(tmp_path: Path) -> None:
     assert len(reading.items) == 4
 
 
+def test_an_object_of_which_nothing_is_known_is_no_heading(tmp_path: Path) -> None:
+    _, reading = read(tmp_path / "list.csv", BY_ROOM.replace("A 3;", "A 9;;;;;;\nA 3;"))
+    assert {one.object_number: one.gallery for one in reading.items}["A 3"] == "SALA 2"
+    assert {one.object_number: one.gallery for one in reading.items}["A 9"] == "SALA 2"
+
+
 def test_headings_that_name_no_places_are_none(tmp_path: Path) -> None:
     classes = BY_ROOM.replace("SALA 1", "CERAMICHE").replace("SALA 2", "MOBILI").replace("DEPOSITO", "VARIE")
     mapping, reading = read(tmp_path / "list.csv", classes)
