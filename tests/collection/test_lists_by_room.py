@@ -180,6 +180,20 @@ def test_a_dump_of_an_api_gives_the_accession_number_and_sizes_as_people_write_t
     assert sizes(reading)["2012.5"] == pytest.approx((0.112, 0.24, 0.24), abs=1e-9)
 
 
+def test_small_objects_with_a_list_in_each_are_no_pages(tmp_path: Path) -> None:
+    objects = [
+        {
+            "number": f"B {at}",
+            "name": "box",
+            "room": "R 1",
+            "sizes": [{"type": "height", "value": at, "unit": "cm"}] * 2,
+        }
+        for at in (1, 2, 3)
+    ]
+    _, reading = read(tmp_path / "objects.json", json.dumps(objects))
+    assert {one.object_number: one.height_m for one in reading.items} == {"B 1": 0.01, "B 2": 0.02, "B 3": 0.03}
+
+
 def test_the_tables_of_tms_on_a_server_that_folds_names(
     tmp_path: Path, postgresql_databases: Callable[[], str]
 ) -> None:
