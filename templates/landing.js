@@ -21,14 +21,17 @@
       // A clock that is behind tells no age.
       if (minutes >= 0 && age) { age.textContent = " (" + said(minutes) + ")"; }
     });
+    var running = document.getElementById("running");
+    var cut = !!running && now - Date.parse(running.getAttribute("data-began")) > Number(running.getAttribute("data-hours")) * 3600000;
+    if (running) { running.className = cut ? "alarm" : "note"; }
     var good = document.querySelector("time[data-good]"), ahead = document.getElementById("ahead");
     if (late && good) {
       var hours = (now - Date.parse(good.getAttribute("datetime"))) / 3600000, most = Number(late.getAttribute("data-hours"));
       late.hidden = hours <= most;
       // So far ahead is no clock that is a little behind.
       ahead.hidden = hours >= -most;
-      document.body.classList.toggle("late", !(late.hidden && ahead.hidden));
     }
+    document.body.classList.toggle("late", cut || !!late && !(late.hidden && ahead.hidden));
   }
   look();
   // A screen that shows the page all day grows older too.

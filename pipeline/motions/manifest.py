@@ -32,7 +32,7 @@ MANIFEST = "manifest.toml"
 MOST = 1000
 """Files of a site's folder that are listed at most."""
 
-NO_RECORDS = frozenset({".md", ".toml", ".html", ".pdf", ".jpg", ".png"})
+NO_RECORDS = frozenset({".md", ".toml", ".html", ".pdf", ".jpg", ".png", ".db", ".ini", ".lnk"})
 """Endings of what lies beside records and is none."""
 
 GROUND_FLOOR = "ground"

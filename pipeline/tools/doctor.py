@@ -4,6 +4,7 @@ import hashlib
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -99,6 +100,10 @@ def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
     return out
 
 
+STALE_D = 31.0
+"""Days after which an export is told to be old: one that is made by hand comes once a month (judgement)."""
+
+
 def _collection(settings: Settings) -> tuple[str, str]:
     wanted = settings.collection
     mapping_of(settings, wanted.mapping)
@@ -109,7 +114,13 @@ def _collection(settings: Settings) -> tuple[str, str]:
     source = settings.path(wanted.source)
     if not source.exists():
         return "wrong", f"{source} is not there; export the collection to it, or change [collection] source"
-    return "ok", f"{source.name}, mapping {wanted.mapping}"
+    text = f"{source.name}, mapping {wanted.mapping}"
+    # Of a folder its files say how old the export is, and of these the newest.
+    files = [source, *(one for one in source.iterdir() if one.is_file())] if source.is_dir() else [source]
+    age = (datetime.now(UTC).timestamp() - max(one.stat().st_mtime for one in files)) / 86_400.0
+    if age < STALE_D:
+        return "ok", text
+    return "warning", f"{text}; written {age:.0f} days ago: see whether the export is still made"
 
 
 def _motions(settings: Settings) -> tuple[str, str]:

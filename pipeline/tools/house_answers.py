@@ -147,6 +147,9 @@ def _rule(cells: Mapping[str, str]) -> HouseRule:
         first = problem.errors(include_url=False)[0]
         column = str(first["loc"][0]) if first["loc"] else "states"
         column = "value" if column == field else column
+        if column == "said_on":
+            message = f"{cells[column][:40]!r} is no day that can be read"
+            raise _RuleError(column, message, "write the day as 2031-05-01") from None
         raise _RuleError(column, str(first["msg"]), "mend the cell") from None
 
 

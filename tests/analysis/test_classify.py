@@ -31,6 +31,8 @@ def carnegie() -> dict[str, Item]:
     [
         ("The Red Lantern", "paintings", "oil on canvas", "framed"),
         ("Chandelier", "lighting devices", "gilded bronze", "chandelier"),
+        ("Lantern", "lighting devices", "brass", "chandelier"),
+        ("Stone lantern", "", "granite", "statue"),
         ("Goblet", "Glass", "blown glass", "stemmed_glass"),
         ("Goblet", "Metals", "silver", "stemmed_glass"),  # the stem is what breaks, whatever it is made of
         ("Wall Drawing #450", "drawings and watercolors", "ink", "wall_painting"),

@@ -55,6 +55,12 @@ def test_a_heading_with_nothing_below_it_is_told(tmp_path: Path) -> None:
     assert len(reading.items) == 4
 
 
+def test_an_object_of_which_nothing_is_known_is_no_heading(tmp_path: Path) -> None:
+    _, reading = read(tmp_path / "list.csv", BY_ROOM.replace("A 3;", "A 9;;;;;;\nA 3;"))
+    assert {one.object_number: one.gallery for one in reading.items}["A 3"] == "SALA 2"
+    assert {one.object_number: one.gallery for one in reading.items}["A 9"] == "SALA 2"
+
+
 def test_headings_that_name_no_places_are_none(tmp_path: Path) -> None:
     classes = BY_ROOM.replace("SALA 1", "CERAMICHE").replace("SALA 2", "MOBILI").replace("DEPOSITO", "VARIE")
     mapping, reading = read(tmp_path / "list.csv", classes)
@@ -172,6 +178,20 @@ def test_a_dump_of_an_api_gives_the_accession_number_and_sizes_as_people_write_t
     height, width, depth = sizes(reading)["2012.4"]
     assert (height, width, depth) == pytest.approx((86 * 0.0254, 19.5 * 0.0254, 0.254), abs=1e-9)
     assert sizes(reading)["2012.5"] == pytest.approx((0.112, 0.24, 0.24), abs=1e-9)
+
+
+def test_small_objects_with_a_list_in_each_are_no_pages(tmp_path: Path) -> None:
+    objects = [
+        {
+            "number": f"B {at}",
+            "name": "box",
+            "room": "R 1",
+            "sizes": [{"type": "height", "value": at, "unit": "cm"}] * 2,
+        }
+        for at in (1, 2, 3)
+    ]
+    _, reading = read(tmp_path / "objects.json", json.dumps(objects))
+    assert {one.object_number: one.height_m for one in reading.items} == {"B 1": 0.01, "B 2": 0.02, "B 3": 0.03}
 
 
 def test_the_tables_of_tms_on_a_server_that_folds_names(

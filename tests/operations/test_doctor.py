@@ -51,6 +51,20 @@ def test_a_new_museum_is_well_but_for_its_first_night(museum: Museum) -> None:
     assert looked["lock"].state == looked["disk"].state == looked["permissions"].state == "ok"
 
 
+def test_an_export_that_is_no_longer_made_is_told(museum: Museum) -> None:
+    """Every night is good then, and tells of a collection that is long another one."""
+    folder = museum()
+    (source,) = folder.glob("*.csv")
+    assert found(folder)["collection"].state == "ok"
+    old = (datetime.now(UTC) - timedelta(days=40)).timestamp()
+    os.utime(source, (old, old))
+    told = found(folder)["collection"]
+    assert (told.state, "written 40 days ago: see whether the export is still made" in told.message) == (
+        "warning",
+        True,
+    )
+
+
 def test_a_site_without_records_is_what_comes_next_until_a_night_has_run(tmp_path: Path) -> None:
     initialise(tmp_path)
     looked = found(tmp_path)

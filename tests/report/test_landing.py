@@ -106,6 +106,23 @@ def _see(browser: Chrome, tmp_path: Path) -> None:
 
 
 @pytest.mark.browser
+def test_a_wrong_clock_and_a_night_that_was_killed_are_red(browser: Chrome, tmp_path: Path) -> None:
+    """A good night of next year is never too old by itself; a run that never ended says nothing more."""
+    seen = {}
+    for hours, state in ((-40, "good"), (-1, "good"), (11.9, "running"), (12.1, "running")):
+        browser.get(page(tmp_path, status(hours=hours, state=state)).as_uri())
+        assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
+        alarms = browser.find_elements("css selector", ".alarm")
+        told = [one.text for one in alarms if one.is_displayed()]
+        seen[hours] = (len(told), "late" in (browser.find_element("css selector", "body").get_attribute("class") or ""))
+        if hours in (-40, 12.1):
+            said = "dated later than now" if hours < 0 else "has not ended"
+            assert said in told[0]
+            assert violations(browser, tmp_path / "index.html") == []
+    assert seen == {-40: (1, True), -1: (0, False), 11.9: (0, False), 12.1: (1, True)}
+
+
+@pytest.mark.browser
 def test_ages_are_in_words_of_the_page(browser: Chrome, tmp_path: Path) -> None:
     for hours, words in ((0.5, "30 minutes ago"), (5, "5 hours ago"), (30, "30 hours ago"), (24 * 5, "5 days ago")):
         browser.get(page(tmp_path, status(hours=hours)).as_uri())

@@ -101,6 +101,9 @@ _ABOUT = frozenset(
 """Words before the name of a side that say only that it is one."""
 
 
+_DENOTING = frozenset({"bezeichnung", "benennung", "denomination", "designation", "denominazione", "denominacion"})
+"""What is called so is called something, a place too."""
+
 _OF_CODES = frozenset({"code", "id", "key", "uri", "url", "no", "since", "date", "from", "until"})
 """Names within a name of what is less than a name."""
 
@@ -284,7 +287,8 @@ def named(name: str) -> ColumnMeaning | None:
     forms += [form.removeprefix(_DISPLAYED) for form in forms if form.startswith(_DISPLAYED)]
     path = path_of(name)
     above = set(map(plain, path[:-1]))
-    if len(path) > 1 and _says(path[-1]) in ("title", "object_name") and _says(path[-2]) == "gallery":
+    denoting = _says(path[-1]) == "title" or plain(path[-1]) in _DENOTING
+    if len(path) > 1 and denoting and _says(path[-2]) == "gallery":
         return _names()[plain(path[-2])]  # what a place is called, and no thing: "Raum.bezeichnung"
     for form in forms:
         found = _names().get(form)

@@ -164,8 +164,8 @@ def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
         return {"format": kind}
     file = json_files(path, deep=True)[0] if path.is_dir() else path
     with _unpacked(file) as binary:
-        _, first = next(read_values(binary, file.name, exact=True), (0, None))
-    where = told.choices.get("records", list_in(first))
+        found = [value for _, value in islice(read_values(binary, file.name, exact=True), 2)]
+    where = told.choices.get("records", list_in(found[0] if found else None, alone=len(found) < 2))
     if where:
         told.sure.append(f"objects are listed as {where!r}")
     return {"format": "json"} | ({"records": where} if where else {})

@@ -270,8 +270,8 @@ def _open(path: Path, most: int) -> BufferedReader:
             )
         if not state.st_size:
             raise CollectionError(
-                f"{path}: empty (0 bytes): the export has failed, or is not written yet; export it again, or run again "
-                "when it is there"
+                f"{path}: empty collection, a file of 0 bytes: the export has failed, or is not written yet; export "
+                "it again, or run again when it is there"
             )
         return path.open("rb")
     except OSError as problem:

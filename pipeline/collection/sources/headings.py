@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Set
 
 from pipeline.collection.errors import CollectionError
@@ -9,6 +10,9 @@ from pipeline.collection.sources.rows import Row
 
 HEADING = "heading"
 """The column with the heading under which a row stands."""
+
+_FIGURES = re.compile(r"\d+")
+_MOST_SHAPES = 10_000
 
 MERGED = "is one of the merged cells"
 """How the fault begins of a cell that a merged one hides."""
@@ -39,6 +43,8 @@ def is_heading(row: Row) -> bool:
 def under_headings(rows: Iterator[Row], file: str) -> Iterator[Row]:
     """Yield the header and the rows with HEADING behind them; a heading is no row, but where no row stands below it.
 
+    What differs from the number of an object above it in figures alone is one too: A 3 below A 2.
+
     Parameters
     ----------
     rows : iterator of Row
@@ -65,16 +71,24 @@ def under_headings(rows: Iterator[Row], file: str) -> Iterator[Row]:
         )
     yield header._replace(cells=[*header.cells, HEADING])
     above, waiting = "", None
+    numbers: set[str] = set()
     for row in rows:
-        if is_heading(row):
+        if is_heading(row) and _shape(row) not in numbers:
             if waiting is not None:
                 yield _headless(waiting)
             above, waiting = next(cell.strip() for cell in row.cells if cell.strip()), row
             continue
         waiting = None
+        if len(numbers) < _MOST_SHAPES:
+            numbers.add(_shape(row))
         yield row._replace(cells=[*row.cells, above])
     if waiting is not None:
         yield _headless(waiting)
+
+
+def _shape(row: Row) -> str:
+    """Return what a row begins with, whatever its figures: an object of which nothing else is known is no heading."""
+    return _FIGURES.sub("0", next((cell.strip() for cell in row.cells if cell.strip()), ""))
 
 
 def _headless(row: Row) -> Row:

@@ -104,7 +104,7 @@ def _unnested(value: Any) -> Iterator[Any]:
         yield value
 
 
-def list_in(value: Any) -> str:
+def list_in(value: Any, *, alone: bool = True) -> str:
     """Return where a value lists objects, as [source] records says it; "" where it is an object itself, or a list.
 
     A page of an API has a list by a name that such lists have, or nothing but it and a few facts about it; a page of
@@ -114,6 +114,8 @@ def list_in(value: Any) -> str:
     ----------
     value : object
         The first of a file.
+    alone : bool
+        Whether it is the only one: of several each is an object, however few facts it has, or a page that is named so.
 
     Returns
     -------
@@ -124,7 +126,7 @@ def list_in(value: Any) -> str:
     while isinstance(value, dict):
         lists = [name for name, one in value.items() if _is_list_of_objects(one)]
         named = [name for name in lists if name in _PAGES]
-        if named or (len(lists) == 1 and len(value) <= 4):
+        if named or (alone and len(lists) == 1 and len(value) <= 4):
             return ".".join([*path, (named or lists)[0]])
         inner = [name for name, one in value.items() if isinstance(one, dict)]
         within = next((name for name in inner if name in (*_PAGES, *_WRAPPERS)), None)

@@ -22,6 +22,9 @@ DAYS = 14
 LATE_HOURS = 36
 """Hours without a good night after which the page is red."""
 
+LONG_HOURS = 12
+"""Hours after which a run that has not ended was interrupted: no night lasts until the next evening (judgement)."""
+
 _MOST = 2000
 
 
@@ -82,6 +85,7 @@ def landing_page(status: Mapping[str, Any], museum: str, language: Language, tim
             "news": None if good is None else _news(good.get("news"), zone),
             "days": days(status.get("nights", ()), zone),
             "late": LATE_HOURS,
+            "long": LONG_HOURS,
         }
         return fill(environment(language), "landing.html", {**context, **script_of("landing")})
 
