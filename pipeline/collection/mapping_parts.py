@@ -109,7 +109,9 @@ class Holds(MappingPart):
         default=None, description="Height, width and depth as mapped, although texts say that they are exchanged."
     )
     units: Literal["mapping"] | None = Field(
-        default=None, description="Units as mapped, although a column of units, or how the numbers are written, differ."
+        default=None,
+        description="Units as mapped, although a column of units, how the numbers are written, or what the things are say "
+        "another.",
     )
     weights: Literal["mapping"] | None = Field(
         default=None, description="Masses and their unit as mapped, although they do not fit the objects' sizes."

@@ -12,10 +12,11 @@ import pytest
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.collection.source_audit import ContradictionError, require_settled
-from pipeline.night.importing import bundled_collection, proposed
+from pipeline.night.importing import bundled_collection, import_collection, proposed
 from pipeline.night.usual_sizes import unfit_sizes
+from pipeline.operations.workspace import open_workspace
 from pipeline.records import Item
-from tests.museum import carnegie
+from tests.museum import carnegie, workspace
 
 HOUSE = Path(__file__).parents[1] / "data" / "collections" / "whole_exports" / "learn" / "house.csv"
 SIDES = ("HEIGHTIN", "WIDTHIN", "LENGTHIN", "DEPTHIN", "DIAMIN")
@@ -69,6 +70,22 @@ def _as(folder: Path, unit: str, factor: float) -> Path:
 def test_columns_whose_heads_name_the_wrong_unit(unit: str, factor: float, fits: str, tmp_path: Path) -> None:
     said = [one.message for one in proposed(str(_as(tmp_path, unit, factor))).suspicions if one.holds == "units"]
     assert [message.rpartition(" ")[2] for message in said] == [fits] * bool(fits)
+
+
+def test_an_import_stops_and_the_mapping_settles_it(tmp_path: Path) -> None:
+    """Vases of 3 mm: what is said of the unit stops the import, writes nothing, and is a choice once it is settled."""
+    place = open_workspace(workspace(tmp_path, [f"{n},A,Vase,0.{n},0.2,0.2" for n in range(11, 41)]))
+    mapping = tmp_path / "mapping.toml"
+    mapping.write_text(mapping.read_text(encoding="utf-8").replace('"m"', '"cm"'), encoding="utf-8")
+    before = (tmp_path / "kouros.sqlite").read_bytes()
+    with pytest.raises(ContradictionError, match="30 of 30 things whose sizes are read in cm are far too small"):
+        import_collection(place, tmp_path / "export.csv", "mapping.toml", shrink_limit=0.9)
+    assert (tmp_path / "kouros.sqlite").read_bytes() == before
+    text = mapping.read_text(encoding="utf-8")
+    mapping.write_text(text + '[holds]\nunits = "mapping"\n', encoding="utf-8")
+    done = import_collection(place, tmp_path / "export.csv", "mapping.toml", shrink_limit=0.9)
+    assert len(done.reading.items) == 30
+    assert any('settled by the mapping, [holds] units = "mapping"' in one.message for one in done.reading.choices)
 
 
 def test_too_few_things_and_things_of_no_usual_size_say_nothing() -> None:
