@@ -110,8 +110,8 @@ class Holds(MappingPart):
     )
     units: Literal["mapping"] | None = Field(
         default=None,
-        description="Units as mapped, although a column of units, how the numbers are written, or what the things are say "
-        "another.",
+        description="Units as mapped, although a column of units, how the numbers are written, or what the things are "
+        "say another.",
     )
     weights: Literal["mapping"] | None = Field(
         default=None, description="Masses and their unit as mapped, although they do not fit the objects' sizes."
