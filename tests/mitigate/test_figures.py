@@ -88,7 +88,7 @@ def slid(motion: Motion, friction: float) -> float:
 
 
 def swung(motion: Motion, length: float) -> float:
-    """How far the centre of a spherical pendulum gets from the plumb line of its hook [m]: Cartesian, with its string."""
+    """How far a spherical pendulum gets from the plumb line of its hook [m]: Cartesian, with its string."""
     t, x, y, n = pushes(motion)
 
     def rates(at: float, s: Array) -> Array:
