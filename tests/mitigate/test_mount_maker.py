@@ -136,6 +136,14 @@ def test_no_steel_clamp_is_put_on_what_is_brittle(motion: Motion, medium: str) -
     assert any(one.startswith("Padded clamps: it harms ") for one in advice.rejected)
 
 
+def test_no_steel_clamp_is_put_on_paint(motion: Motion) -> None:
+    wood = replace(TOWER, medium="wood", allowable_stress_pa=5e8)
+    assert solve(wood, motion).measure == "clamps"
+    advice = solve(replace(wood, medium="painted wood"), motion)
+    assert advice.measure == "fasten"
+    assert "Padded clamps: it harms paint and lacquer" in advice.rejected
+
+
 def test_nothing_is_tied_to_a_shelf_of_glass(motion: Motion) -> None:
     """Ties need eyes in what a thing stands on, as clips need screws; a mount may hold on to the shelf's edges."""
     ivory = replace(TOWER, mass_kg=2.0, medium="ivory", base_width_m=0.1, base_depth_m=0.1, allowable_stress_pa=5e7)
