@@ -1,7 +1,7 @@
 """Isolators under the levels of a floor, each run once for all that may stand on it, and what all scenes share."""
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -85,6 +85,11 @@ class SharedLevel:
     def __init__(self, level: LevelMotions) -> None:
         self.level = level
         self.responses: dict[Isolator, LevelResponse] = {}
+
+    @cached_property
+    def usual(self) -> "SharedLevel":
+        """The same as the furniture passes it on by the best estimates, and by no other variant."""
+        return SharedLevel(replace(self.level, others=()))
 
     @cached_property
     def push(self) -> float:

@@ -133,6 +133,11 @@ class TrialRunner:
         return max(shared.push for shared in self._shared)
 
     @property
+    def usual_push(self) -> float:
+        """A_max [m/s2], resultant, as the furniture passes it on by the best estimates."""
+        return max(shared.usual.push for shared in self._shared)
+
+    @property
     def lift(self) -> float:
         """The largest |a_h| / N: what an object's slope b/h is held against."""
         return max(shared.lift for shared in self._shared)
@@ -148,13 +153,15 @@ class TrialRunner:
         friction = scene.parameters.get("friction_static")
         return self.lift if friction is None else min(self.lift, friction.high)
 
-    def tipping(self, arm: float, base: float) -> float:
+    def tipping(self, arm: float, base: float, *, usual: bool = False) -> float:
         """Return the largest of |a_h| times an arm less N times a base, N = max(0, g + a_z), but not below 0.
 
         Parameters
         ----------
         arm, base : float
             Both above 0 [m].
+        usual : bool
+            Whether the furniture is taken by its best estimates, and not by the worst that it may be.
 
         Returns
         -------
@@ -162,13 +169,13 @@ class TrialRunner:
             In any direction [m2/s2]: times the mass the moment that lifts the base off.
         """
         # Every fixing asks it of the same objects.
-        return self.once(("tipping", arm, base), lambda: self._tipping(arm, base))
+        return self.once(("tipping", arm, base, usual), lambda: self._tipping(arm, base, usual))
 
-    def _tipping(self, arm: float, base: float) -> float:
+    def _tipping(self, arm: float, base: float, usual: bool) -> float:
         each = (
             shared.level.combined([float(np.max(arm * push - base * weight)) for push, weight in some])
             for shared in self._shared
-            for some in shared.hardest
+            for some in (shared.usual if usual else shared).hardest
         )
         return max(0.0, *each)
 

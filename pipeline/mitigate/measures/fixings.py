@@ -128,7 +128,8 @@ class HoldingDemand:
     Attributes
     ----------
     force, worst_force : float
-        Sideways [N], without the help of friction: by the best estimates, and all that is uncertain at its worse end.
+        Sideways [N], without the help of friction: by the best estimates, of its furniture too, and all that is
+        uncertain at its worse end.
     moment, worst_moment : float
         That lifts the base off, the weight holding it down [N m].
     """
@@ -150,14 +151,16 @@ class HoldingDemand:
         """
         p = scene.parameters
         mass, cg, half = p["mass"], p["cg_height"], p["half_width"]
-        push = worst = runner.push
+        usual, most_pushed = runner.usual_push, runner.push
+        push, worst = usual, most_pushed
         if bends(scene):
-            push, worst = (max(push, felt) for felt in _pseudo_acceleration(scene, runner))
-        times, most = (one / runner.push if runner.push > 0.0 else 1.0 for one in (push, worst))
+            felt, most_felt = _pseudo_acceleration(scene, runner)
+            push, worst = max(push, felt), max(worst, most_felt)
+        times, most = (one / of if of > 0.0 else 1.0 for one, of in ((push, usual), (worst, most_pushed)))
         return cls(
             mass.value * push,
             mass.high * worst,
-            mass.value * runner.tipping(times * cg.value, half.value),
+            mass.value * runner.tipping(times * cg.value, half.value, usual=True),
             mass.high * runner.tipping(most * cg.high, half.low),
         )
 
