@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import cache
 from math import log10
 from statistics import median
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 from pydantic import BaseModel, Field
 
@@ -29,6 +29,8 @@ TOO = 0.5
 """Decimal logarithm of how many times: half of the step from one metric unit to the next."""
 LEAST = 0.65
 """The same of the object in the middle at least, 4.5 times: of eleven museums in their right unit it is 0.9 to 2.1."""
+ALONE = 0.9
+"""The same where all things are of one class, 8 times: a collection of floor vases is one; judgement."""
 NEAR = 0.4
 """How far it may then be from its usual size in the unit that fits."""
 SURE = 0.3
@@ -62,16 +64,25 @@ def unfit_sizes(items: Sequence[Item]) -> tuple[Suspicion, ...]:
     tuple of Suspicion
         With the unit that fits, and some of the things.
     """
-    seen: dict[str, list[tuple[float, Item]]] = {}
+    seen: dict[str, list[_Apart]] = {}
     for item in items[:: max(1, len(items) // SEEN)]:
         found = _apart(item)
         if found is not None:
-            seen.setdefault(found[0], []).append((found[1], item))
+            seen.setdefault(found.unit, []).append(found)
     return tuple(one for unit, those in sorted(seen.items()) for one in _unfit(unit, those))
 
 
-def _apart(item: Item) -> tuple[str, float] | None:
-    """Return the unit of a thing's largest side, and how far it is from the usual size; None where neither is known."""
+class _Apart(NamedTuple):
+    """A thing, its class, the unit of its largest side, and how far that is from the usual size."""
+
+    unit: str
+    far: float
+    object_class: str
+    item: Item
+
+
+def _apart(item: Item) -> _Apart | None:
+    """Return how far a thing's largest side is from the usual size; None where that or its unit is not known."""
     sides = {side: value for side in _SIDES if (value := getattr(item, side)) is not None}
     if not sides:
         return None
@@ -80,15 +91,18 @@ def _apart(item: Item) -> tuple[str, float] | None:
     taken = class_of(replace(item, height_m=None, width_m=None, depth_m=None))
     usual = _usual().get(taken.name)
     sure = dict(taken.chances).get(taken.name, 0.0) >= SURE
-    return (unit, log10(sides[side] / usual)) if unit in _UNITS and usual is not None and sure else None
+    if unit not in _UNITS or usual is None or not sure:
+        return None
+    return _Apart(unit, log10(sides[side] / usual), taken.name, item)
 
 
-def _unfit(unit: str, those: Sequence[tuple[float, Item]]) -> list[Suspicion]:
-    middle = median(far for far, _ in those)
+def _unfit(unit: str, those: Sequence[_Apart]) -> list[Suspicion]:
+    middle = median(one.far for one in those)
     apart = {one: abs(middle + log10(LENGTHS[one] / LENGTHS[unit])) for one in _UNITS}
     other = min(_UNITS, key=lambda one: apart[one])
-    alike = [(far, item) for far, item in those if far * middle > 0.0 and abs(far) > TOO]
-    if len(those) < FEWEST or abs(middle) < LEAST or apart[other] > NEAR or len(alike) < MOST * len(those):
+    alike = [one for one in those if one.far * middle > 0.0 and abs(one.far) > TOO]
+    least = LEAST if len({one.object_class for one in those}) > 1 else ALONE
+    if len(those) < FEWEST or abs(middle) < least or apart[other] > NEAR or len(alike) < MOST * len(those):
         return []
     much = figures(10.0 ** abs(middle), 2)
     return [
@@ -100,7 +114,7 @@ def _unfit(unit: str, those: Sequence[tuple[float, Item]]) -> list[Suspicion]:
             f'measure one object again; if it was {other}, say unit = "{other}" in the mapping, if not [holds] units = '
             '"mapping"',
             "units",
-            tuple(_in_words(item) for _, item in alike[:3]),
+            tuple(_in_words(one.item) for one in alike[:3]),
         )
     ]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -92,3 +93,23 @@ def test_too_few_things_and_things_of_no_usual_size_say_nothing() -> None:
     items = [one for one in _read_in("m") if "chair" in one.title.casefold()]
     assert unfit_sizes(items[:5]) == ()
     assert unfit_sizes([]) == ()
+
+
+@pytest.mark.parametrize(("times", "doubted"), [(4.0, False), (10.0, True)])
+def test_of_things_of_one_class_more_is_asked(times: float, doubted: bool) -> None:
+    """Floor vases of a metre are six times as large as vessels are (0.17 m); a wrong unit makes it ten times."""
+    vases = [
+        one for one in _read_in("cm") if one.object_name == "vase" or one.title.lower() in ("vase", "covered vase")
+    ]
+    assert len(vases) >= 20
+    # In inches, which no unit of the audit is: as centimetres they are 2.54 times too small.
+    large = [
+        replace(
+            one,
+            **{
+                side: 2.54 * times * size for side in ("height_m", "width_m", "depth_m") if (size := getattr(one, side))
+            },
+        )
+        for one in vases
+    ]
+    assert bool(unfit_sizes(large)) is doubted
