@@ -279,7 +279,7 @@ def test_a_drill_is_said_to_be_one_and_is_timed(museum: Path) -> None:
 
 
 def test_without_a_run_it_says_how_to_make_one(tmp_path: Path) -> None:
-    workspace(tmp_path)
+    workspace(tmp_path, furnished=True)
     with pytest.raises(StoreError, match="make one with `kouros run`"):
         ask(tmp_path, MAP)
 

@@ -104,7 +104,7 @@ def set_of_vases() -> list[dict[str, str]]:
 
 
 def test_a_set_is_worked_on_once_and_shown_as_if_each_had_been(tmp_path: Path, assessed: list[str]) -> None:
-    settings = museum_of(tmp_path / "set", set_of_vases())
+    settings = museum_of(tmp_path / "set", set_of_vases(), furnished=True)
     night(settings)
     assert sorted(number.partition(".")[2] for number in assessed) == ["0", "1", "2", "3"]
     together = found(settings)
@@ -113,7 +113,7 @@ def test_a_set_is_worked_on_once_and_shown_as_if_each_had_been(tmp_path: Path, a
         assert all(f.gallery == one.scene.item.gallery for f in (*one.findings, *one.recommendations))
     # Each in a museum of its own, where nothing is like it.
     for number, row in ((5, set_of_vases()[5]), (10, set_of_vases()[10])):
-        alone = museum_of(tmp_path / f"alone-{number}", [row])
+        alone = museum_of(tmp_path / f"alone-{number}", [row], furnished=True)
         night(alone)
         (own,) = found(alone).assessments
         assert own == together.assessments[number]
@@ -179,7 +179,7 @@ def pair(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("pair")
 def test_where_several_work_what_is_alike_is_still_worked_on_once(tmp_path: Path, assessed: list[str]) -> None:
-    settings = museum_of(tmp_path / "set", set_of_vases())
+    settings = museum_of(tmp_path / "set", set_of_vases(), furnished=True)
     night(settings)
     assert sorted(number.partition(".")[2] for number in assessed) == ["0", "1", "2", "3"]
     batches = {file.name for file in (settings.kept / HISTORIES).iterdir()}
@@ -212,7 +212,7 @@ def test_what_is_worked_on_together_stands_in_the_same_furniture(
 
     true = scheduler.assess_units
     monkeypatch.setattr(scheduler, "assess_units", assess_units)
-    settings = museum_of(tmp_path / "museum", rows)
+    settings = museum_of(tmp_path / "museum", rows, furnished=True)
     assert night(settings).fresh == len(rows)
     kinds = [{classify(item).furniture for item in some} for some in given]
     assert all(len(kind) == 1 for kind in kinds)

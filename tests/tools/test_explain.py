@@ -118,7 +118,7 @@ def test_what_stands_on_an_installed_isolator_is_explained_as_the_night_judged_i
 
 def test_furniture_that_is_not_fastened_is_explained_as_the_night_judged_it(tmp_path: Path) -> None:
     """Whether its furniture falls is reasoned too, and that it is fastened first; a scan states no error."""
-    settings = workspace(tmp_path, ROWS[:1])
+    settings = workspace(tmp_path, ROWS[:1], furnished=True)
     file = tmp_path / "kouros.toml"
     rule = 'furniture = "showcase"\nfurniture_anchorage = "unanchored"\nsaid_by = "a test"\nsaid_on = 2026-01-01\n'
     rule = f'\n[[house]]\nsupport = "freestanding"\n{rule}'
