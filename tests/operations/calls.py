@@ -24,7 +24,7 @@ from typing import Any
 from sqlalchemy import select
 
 from pipeline.collection.database import open_database
-from pipeline.operations.report_status import FAILED, GOOD, RUNNING, status
+from pipeline.operations.report_status import RESERVE, FAILED, GOOD, RUNNING, status
 from pipeline.settings import load_settings
 from pipeline.store.pages import damaged_pages, load_members
 from pipeline.store.results import damaged as damaged_results
@@ -53,7 +53,7 @@ SETTINGS = {"runs = 0": "runs = 1", "reports = 0": "reports = 1", 'file = ""': '
 LONGEST = 60.0
 """Seconds after which a night hangs."""
 
-_OURS = frozenset({".kouros-kept", ".kouros.lock", ".pages.json"})
+_OURS = frozenset({".kouros-kept", ".kouros.lock", ".pages.json", RESERVE})
 
 
 @dataclass(frozen=True)
