@@ -24,7 +24,7 @@ from typing import Any
 from sqlalchemy import select
 
 from pipeline.collection.database import open_database
-from pipeline.operations.report_status import RESERVE, FAILED, GOOD, RUNNING, status
+from pipeline.operations.report_status import FAILED, GOOD, RESERVE, RUNNING, status
 from pipeline.settings import load_settings
 from pipeline.store.pages import damaged_pages, load_members
 from pipeline.store.results import damaged as damaged_results
