@@ -104,7 +104,7 @@ def test_the_rules_that_answer_most_come_first(tmp_path: Path) -> None:
         for n in range(count)
     ]  # fmt: skip
     folder = tmp_path / "tall"
-    museum_of(folder, tall)
+    museum_of(folder, tall, furnished=True)
     shutil.rmtree(folder / "site")
     short_site(folder)
     night(load_settings(folder / "kouros.toml"))

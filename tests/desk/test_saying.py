@@ -326,7 +326,7 @@ def test_it_works_on_a_postgresql_server(
     postgresql_url = postgresql_databases()
     monkeypatch.setenv("KOUROS_DATABASE", postgresql_url)
     folder = tmp_path / "museum"
-    settings = museum_of(folder, vases(1, 2))
+    settings = museum_of(folder, vases(1, 2), furnished=True)
     night(settings)
     with served(folder) as there:
         visitor = Visitor(there)
