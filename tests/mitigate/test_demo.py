@@ -17,7 +17,7 @@ from pipeline.mitigate.measures.base import held
 from pipeline.mitigate.saying import AT_BEST, SIZED
 from pipeline.motions import read_site
 from pipeline.quantities import Array, G
-from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRecord, Support, Verdict
+from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRecord, Verdict
 from pipeline.resources import resource
 
 pytestmark = pytest.mark.slow_file
