@@ -14,7 +14,7 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.measures.base import held
-from pipeline.mitigate.saying import AT_BEST, SIZED
+from pipeline.mitigate.saying import AT_BEST, BY_HAND, SIZED
 from pipeline.motions import read_site
 from pipeline.quantities import Array, G
 from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRecord, Verdict
@@ -269,7 +269,7 @@ def test_fixings_hold(record: RunRecord, motions: tuple[Motion, ...]) -> None:
             p, at = assessment.scene.parameters, recommended.parameters
             pieces, area = at["pieces"], 0.25 * np.pi * at["size"] ** 2 if "size" in at else 1.0
             # Another sentence may follow: that it has to be said first what the object is.
-            sure = not any(one in recommended.sentence for one in (SIZED, AT_BEST))
+            sure = not any(one in recommended.sentence for one in (SIZED, AT_BEST, BY_HAND))
 
             def holds(worse: bool, tension: float, shear: float) -> float:
                 shaking = most if worse else usual  # noqa: B023
