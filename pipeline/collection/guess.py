@@ -16,6 +16,7 @@ from pipeline.collection.guessing.columns import (
     Column,
     candidates,
     captions_of_dimensions,
+    joined,
     length_beside,
     material_and_technique,
     prose_of_dimensions,
@@ -483,7 +484,7 @@ def _of_preset(
     if not tells("height_m", "width_m", "depth_m", "diameter_m") and not filled & set(texts):
         told.doubts.append("no record tells sizes: export the dimensions too")
     places = proposal.columns["gallery"].sources
-    stores = list(filter(says_away, _joined(columns, places, proposal.columns["gallery"].separator)))
+    stores = list(filter(says_away, joined(columns, places, proposal.columns["gallery"].separator)))
     if stores:
         document["display"] = {"not_on_display": stores[:MOST_STORES]}
         text = tomlkit.dumps(document)
@@ -491,13 +492,6 @@ def _of_preset(
     elif not tells("on_display"):
         told.doubts.append("nothing tells what is on display: name stores in the mapping, [display] not_on_display")
     return Guess(text, Proposal.model_validate(tomlkit.parse(text).unwrap()), tuple(told.doubts), (), tuple(told.sure))
-
-
-def _joined(columns: Sequence[Column], names: Sequence[str], separator: str) -> list[str]:
-    """Return the different texts that some columns give together."""
-    read = [next(column for column in columns if column.name == name) for name in names]
-    rows = zip(*(column.values for column in read), strict=True)
-    return list(dict.fromkeys(separator.join(filter(None, map(str.strip, row))) for row in rows))
 
 
 def _said_of(stores: Sequence[str]) -> str:

@@ -1,6 +1,7 @@
 """What is said besides the sentence of a measure: what comes first, who does it, and what is to be found out before."""
 
 import re
+from math import inf
 
 from pipeline.analysis.told import held_as_displayed
 from pipeline.mitigate.measures import Measure
@@ -63,7 +64,13 @@ ENGINEER = (
     "Have an engineer design this: it is more than a mount-maker's fixing, and more than a plinth, a case, a floor or "
     "a wall is known to take."
 )
-"""Comes before the sentence of a measure whose force is beyond that, or beyond what its furniture takes."""
+"""Comes before the sentence of a measure whose force is beyond that."""
+
+TOO_MUCH = (
+    "That is more than such furniture is known to take: have it fixed to a board or a frame over its whole width, or "
+    "stand it elsewhere."
+)
+"""Follows the sentence of a measure that asks more of a case, a plinth or a shelf than that takes (furniture.csv)."""
 
 ON_GLASS = (
     "It stands on glass, into which nothing is screwed: have the mount hold on to the edges of its shelf, or stand it "
@@ -83,7 +90,7 @@ IN_WARMTH = "Wax and putty give way in warmth: not under hot lamps, and not in t
 BY_HAND = "Try by hand whether it holds: where it gives, use more."
 """Follows the sentence of dots under what is so light that more of them cost less than to weigh it."""
 
-SAID_AS_IT_IS = (STANDS_ON, ON_GLASS, LID, UNSEEN, IN_WARMTH, BY_HAND, TWICE, FOURFOLD)
+SAID_AS_IT_IS = (TOO_MUCH, STANDS_ON, ON_GLASS, LID, UNSEEN, IN_WARMTH, BY_HAND, TWICE, FOURFOLD)
 """Of what follows the ones that a page says as they are."""
 
 ANCHORED = "Fasten what it stands in to the floor or a wall first."
@@ -132,8 +139,11 @@ def said_besides(
         first.append(HELD_FIRST)
     if {say.TWO_BODIES(), say.STACKED()} & set(scene.assumptions):
         first.append(UPPER_FIRST)
-    if _engineered(measure, scene, numbers, values):
+    asked = _asked(measure, scene, numbers)
+    if asked >= ENGINEERED:
         first.append(ENGINEER)
+    elif asked >= _takes(scene, values):
+        more.append(TOO_MUCH)
     if measure.for_room:
         more.append(hung_by(scene).strip())
     more += [said for said, holds in _besides(measure, scene, values) if holds]
@@ -171,23 +181,27 @@ def _besides(measure: Measure, scene: Scene, values: AssumedValues) -> tuple[tup
     )
 
 
-def _engineered(measure: Measure, scene: Scene, numbers: Numbers, values: AssumedValues) -> bool:
-    """Say whether what a measure asks of its fixings is more than a mount-maker, or its furniture, is good for.
+def _asked(measure: Measure, scene: Scene, numbers: Numbers) -> float:
+    """Return the force [N] that a measure asks of its fixings, the larger one of sideways and upwards.
 
     By the best estimate of its mass: of what nobody weighed the most that it may weigh says nothing of who does it.
     """
     if "force" not in numbers:
-        return False
+        return 0.0
     mass, (force, _) = scene.parameters.get("mass"), numbers["force"]
     share = mass.value / mass.high if mass is not None and "pieces" not in numbers and mass.high > 0.0 else 1.0
-    row = None if scene.furniture is None else values.furniture.get(scene.furniture.value)
-    takes = row.takes if row is not None and row.takes is not None and scene.support in STANDING else ENGINEERED
     half = scene.parameters.get("half_width")
     pull = 0.0
     if measure.fastens and "moment" in numbers and half is not None and half.value > 0.0:
         # The pieces on the one side of the base pull what those on the other press.
         pull = numbers["moment"][0] / (2.0 * half.value)
-    return max(force, pull) * share >= min(takes, ENGINEERED)
+    return max(force, pull) * share
+
+
+def _takes(scene: Scene, values: AssumedValues) -> float:
+    """Return the force [N] that what an object stands on takes; infinite where nothing is known against it."""
+    row = None if scene.furniture is None else values.furniture.get(scene.furniture.value)
+    return row.takes if row is not None and row.takes is not None and scene.support in STANDING else inf
 
 
 def _unweighed(mass: Estimate) -> bool:

@@ -18,7 +18,18 @@ from pipeline.execute import Threads
 from pipeline.mitigate import advise
 from pipeline.mitigate.installed import Placed, stood_of
 from pipeline.mitigate.measures.clearance import HAND
-from pipeline.mitigate.saying import BY_HAND, ENGINEER, ENGINEERED, IN_WARMTH, LID, ON_GLASS, SIZED, STANDS_ON, UNSEEN
+from pipeline.mitigate.saying import (
+    BY_HAND,
+    ENGINEER,
+    ENGINEERED,
+    IN_WARMTH,
+    LID,
+    ON_GLASS,
+    SIZED,
+    STANDS_ON,
+    TOO_MUCH,
+    UNSEEN,
+)
 from pipeline.mitigate.trials import HarmAim
 from pipeline.quantities import G
 from pipeline.records import Anchorage, Furniture, Item, Motion, Mount, Recommendation, Sampling, Support
@@ -78,11 +89,13 @@ def test_what_is_beyond_a_mount_maker_is_an_engineers(motion: Motion, mass: floa
 
 
 def test_furniture_takes_less_than_a_floor(motion: Motion) -> None:
-    """A shelf takes 300 N: a thing of 20 kg, bracketed on the floor without a word, is an engineer's there."""
+    """A shelf takes 300 N: a thing of 20 kg, bracketed on the floor without a word, asks more of it."""
     item = replace(TOWER, allowable_stress_pa=5e8, surface_material="wood")
     floor, shelf = (solve(replace(item, furniture=one), motion) for one in (Furniture.FLOOR, Furniture.SHELF))
-    assert ENGINEER not in floor.sentence
-    assert shelf.sentence.startswith(ENGINEER)
+    assert ENGINEER not in floor.sentence + shelf.sentence
+    assert TOO_MUCH not in floor.sentence
+    assert TOO_MUCH in shelf.sentence
+    assert TOO_MUCH in plain_measure(shelf, Units())
     assert shelf.parameters["force"] > 300.0
 
 

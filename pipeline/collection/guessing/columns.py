@@ -407,3 +407,10 @@ def _telling_most(columns: Sequence[Column], share: Callable[[Column], float]) -
     """Return the column that tells the sizes of most objects, by the share of its texts that do; None below a tenth."""
     best = max(columns, key=lambda column: share(column) * len(column.filled), default=None)
     return best if best is not None and share(best) * len(best.filled) >= 0.1 * len(best.values) else None
+
+
+def joined(columns: Sequence[Column], names: Sequence[str], separator: str) -> list[str]:
+    """Return the different texts that some columns give together."""
+    read = [next(column for column in columns if column.name == name) for name in names]
+    rows = zip(*(column.values for column in read), strict=True)
+    return list(dict.fromkeys(separator.join(filter(None, map(str.strip, row))) for row in rows))
