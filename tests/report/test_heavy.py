@@ -63,11 +63,11 @@ def test_it_can_be_used_soon(browser: Chrome, page: Path, record_property: pytes
         browser.get(page.as_uri())
         took.append(
             browser.execute_async_script(
-                "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() =>"
-                "done(document.querySelector('.list thead button') ? performance.now() / 1000 : null)))"
+                "const done = arguments[0]; const look = () => document.querySelector('.list thead button')"
+                "? requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now() / 1000)))"
+                ": setTimeout(look, 10); look()"
             )
         )
-    assert None not in took
     record_property("seconds_to_interactive", took)
     print(f"interactive after {min(took):.2f} s, {page.stat().st_size / 1e6:.2f} MB")
     assert min(took) < SLOW
