@@ -66,9 +66,9 @@ def known(of: RuleTable, word: str) -> tuple[tuple[tuple[str, ...], str], ...]:
 
 def forms(word: str) -> tuple[str, ...]:
     """Return a word as it stands, then as the singulars that its ending allows in the languages of the table."""
-    able = [word]
     if word in _NO_PLURALS:
         return (word,)
+    able = [word]
     if len(word) > 3:
         if word.endswith("ies"):
             able.append(word[:-3] + "y")

@@ -254,11 +254,9 @@ def _overloads(scene: Scene, row: FurnitureRow) -> tuple[str, ...]:
         return (say.HEAVY_FOR_FURNITURE(mass=mass.value, furniture=row.title, bears=bears),)
     area = (item.width_m or item.depth_m or 0.0) * (item.depth_m or item.width_m or 0.0)
     load = mass.value / max(area, SPREAD)
-    return (
-        (say.HEAVY_FOR_FLOOR(load=load, bears=FLOOR_BEARS),)
-        if scene.furniture is Furniture.FLOOR and load > FLOOR_BEARS
-        else ()
-    )
+    if scene.furniture is not Furniture.FLOOR or load <= FLOOR_BEARS:
+        return ()
+    return (say.HEAVY_FOR_FLOOR(load=load, bears=FLOOR_BEARS),)
 
 
 def _anchorage(item: Item, house: HouseEffect) -> tuple[Anchorage | None, str]:

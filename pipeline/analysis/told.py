@@ -8,7 +8,7 @@ from textwrap import shorten
 from pipeline.records import Furniture, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
-from pipeline.tables.held_rows import told_by, words_for
+from pipeline.tables.held_rows import CASES, told_by, words_for
 from pipeline.tables.rows import any_of
 from pipeline.tables.surface_rows import surfaces_in
 
@@ -23,9 +23,6 @@ _ABOVE = (Support.HUNG, Support.SUSPENDED)
 _TO_STAND_ON = (Furniture.FLOOR, Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
 
 _IN_CASES = (Furniture.SHOWCASE, Furniture.SHELF)
-
-_CASES = ("case", "cases", "cabinet", "Schrank", "kast")
-"""Words that in a field for cases name one; elsewhere they may be of furniture that is shown."""
 
 
 def as_displayed(item: Item) -> Item:
@@ -134,7 +131,8 @@ def _names_case(item: Item) -> bool:
 
 @cache
 def _case_words() -> re.Pattern[str]:
-    return any_of([*_CASES, *(word for kind in _IN_CASES for word in words_for(kind))])
+    # In a field for cases a bare word is enough; elsewhere it may be of furniture that is shown.
+    return any_of([*CASES, "cabinet", *(word for kind in _IN_CASES for word in words_for(kind))])
 
 
 def too_slender(item: Item) -> float:

@@ -5,14 +5,12 @@ from functools import cache, lru_cache
 from typing import NamedTuple
 
 from pipeline.records import Furniture
-from pipeline.tables.held_rows import told_by, words_for
+from pipeline.tables.held_rows import CASES, told_by, words_for
 from pipeline.tables.rows import any_of
 
 _SEPARATOR = re.compile(r"\s*[,;/>|]\s*|:\s+|\s+[-–—]\s+")
 _SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS."""
-_NUMBERED = ("case", "cases", "Schrank", "kast")
-"""Words that name furniture only where a number follows."""
 
 
 class NamedPlace(NamedTuple):
@@ -65,7 +63,7 @@ def _patterns() -> tuple[re.Pattern[str], re.Pattern[str], re.Pattern[str]]:
     """Return what is wholly a case, what is so with its number, and where one with a number begins."""
     kinds = (Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
     plain = [word for kind in kinds for word in words_for(kind) if "*" not in word]
-    word, numbered = f"(?:{any_of(plain).pattern})", f"(?:{any_of([*plain, *_NUMBERED]).pattern})"
+    word, numbered = f"(?:{any_of(plain).pattern})", f"(?:{any_of([*plain, *CASES]).pattern})"
     counted = rf"{numbered}\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}"
     before = r"\s*(?:[^\W\d_]+[\s-]+){0,2}"
     return (

@@ -91,7 +91,7 @@ def _run(
         workspace = open_workspace(settings)
         verify_file(workspace.engine)
         shown = last_good(settings)
-        lost = "" if dry_run else reports_lost(settings, len(whole_runs(workspace.engine)))
+        lost = "" if dry_run or shown is not None else reports_lost(settings, len(whole_runs(workspace.engine)))
         if lost:
             warnings.warn(f"{lost}; this night's report is put there", DamageWarning, stacklevel=2)
         if shown is not None and not dry_run:

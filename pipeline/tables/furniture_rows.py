@@ -101,7 +101,7 @@ class FurnitureRow(AssumedRow):
     bears : float or None
         Mass that it mostly bears [kg]; what is heavier is doubted.
     takes : float or None
-        Force that fixings on it may bring into it [N]; what is more is an engineer's work.
+        Force that fixings on it may bring into it [N]; of what asks for more that is said.
     """
 
     # Columns that a museum's own table leaves out are checked as if they were empty.

@@ -8,7 +8,7 @@ from pipeline.collection.display_words import says_away
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.fields import tells_display
 from pipeline.collection.guessing.names import named, outright
-from pipeline.collection.sources.headings import HEADING, is_heading
+from pipeline.collection.sources.headings import HEADING, first_text, is_heading
 from pipeline.collection.sources.rows import Row
 
 FEWEST = 2
@@ -32,9 +32,7 @@ def has_headings(rows: Sequence[Row]) -> bool:
     """
     alone = [is_heading(row) for row in rows]
     texts = [
-        next(filter(str.strip, row.cells)).strip()
-        for row, one, below in zip(rows, alone, [*alone[1:], True], strict=False)
-        if one and not below
+        first_text(row) for row, one, below in zip(rows, alone, [*alone[1:], True], strict=False) if one and not below
     ]
     places = sum(map(_names_place, texts))
     return FEWEST <= len(texts) <= _MOST * len(rows) and places >= FEWEST and 2 * places >= len(texts)

@@ -157,7 +157,7 @@ def _many(legend: str) -> int:
 
 def _labelled(text: str) -> tuple[str, ...]:
     """Return the sides of a text in their order, where it labels each; () where it leaves one open."""
-    parts = [part for part in parse(text).parts if part.dimension != "weight"]
+    parts = _lengths(parse(text).parts)
     first = [part for part in parts if part.group == parts[0].group]
     sides = tuple(part.dimension for part in sorted(first, key=lambda part: part.start))
     labelled = _SIDES.issuperset(sides) and len(set(sides)) == len(sides) and not any(part.assumed for part in first)

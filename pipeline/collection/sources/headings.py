@@ -18,6 +18,11 @@ MERGED = "is one of the merged cells"
 """How the fault begins of a cell that a merged one hides."""
 
 
+def first_text(row: Row) -> str:
+    """Return what the first cell of a row says that says anything; "" where none does."""
+    return next((cell.strip() for cell in row.cells if cell.strip()), "")
+
+
 def is_heading(row: Row) -> bool:
     """Say whether a row holds one text alone, perhaps merged across the others.
 
@@ -76,7 +81,7 @@ def under_headings(rows: Iterator[Row], file: str) -> Iterator[Row]:
         if is_heading(row) and _shape(row) not in numbers:
             if waiting is not None:
                 yield _headless(waiting)
-            above, waiting = next(cell.strip() for cell in row.cells if cell.strip()), row
+            above, waiting = first_text(row), row
             continue
         waiting = None
         if len(numbers) < _MOST_SHAPES:
@@ -88,12 +93,12 @@ def under_headings(rows: Iterator[Row], file: str) -> Iterator[Row]:
 
 def _shape(row: Row) -> str:
     """Return what a row begins with, whatever its figures: an object of which nothing else is known is no heading."""
-    return _FIGURES.sub("0", next((cell.strip() for cell in row.cells if cell.strip()), ""))
+    return _FIGURES.sub("0", first_text(row))
 
 
 def _headless(row: Row) -> Row:
-    text = next(cell.strip() for cell in row.cells if cell.strip())[:80]
-    fault = f"{text!r} stands alone in its row, as a heading does, and no row below it", "leave it out, or fill the row"
+    told = f"{first_text(row)[:80]!r} stands alone in its row, as a heading does, and no row below it"
+    fault = told, "leave it out, or fill the row"
     return row._replace(cells=[*row.cells, ""], fault=fault, faults={})
 
 
