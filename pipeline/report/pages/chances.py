@@ -7,7 +7,7 @@ from pipeline.analysis.classify import object_classes
 from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss, ill_weighed, to_check
 from pipeline.analysis.survey import measurables, size_behind
 from pipeline.models.rigid_body import rocking_harms
-from pipeline.records import Assessment, Band, Harm, IfClass, Likelihood, Mount, Recommendation, Scene
+from pipeline.records import Assessment, Band, Harm, IfClass, Likelihood, Mount, Recommendation, Scene, Support
 from pipeline.records.likelihood import CLASS
 from pipeline.report.language import _, local, said
 from pipeline.report.text import clean, words
@@ -63,7 +63,8 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         "error": percent(found.error, 1),
         "samples": found.samples,
     }
-    others = [f"{_STATES[Harm(name)]()} {_percent(p)}" for name, p in found.states.items() if p >= _LEAST]
+    likely = ((name, p) for name, p in found.states.items() if p >= _LEAST)
+    others = [f"{state_word(Harm(name), assessment.scene)} {_percent(p)}" for name, p in likely]
     more = f": {', '.join(others)}" if others else ""
     slender = doubtful(assessment.scene)
     check = ""
@@ -82,7 +83,7 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         check = " ".join(filter(None, (check, _("Say first what it is: %(classes)s?") % {"classes": asked})))
     classes = ", ".join(map(_if_class, found.classes))
     return ChanceView(
-        _sentence(found),
+        _sentence(found, assessment.scene),
         " ".join(filter(None, (f"{numbers}{more}.", _by_rocking(assessment.scene, found)))),
         clean(found.level),
         check,
@@ -222,7 +223,6 @@ _BANDS = {
 }
 _STATES = {
     Harm.SHIFTS: lambda: _("shifts"),
-    Harm.LEAVES: lambda: _("leaves its place or hits something"),
     Harm.ROCKS: lambda: _("rocks"),
     Harm.FALLS: lambda: _("falls"),
     Harm.BREAKS: lambda: _("breaks"),
@@ -234,12 +234,23 @@ def band_word(band: Band) -> str:
     return _BANDS[band]()
 
 
-def state_word(state: Harm) -> str:
-    """Return a state in words."""
+# What leaves its place does it by the way in which it is held.
+_LEAVES = {
+    Support.HUNG: lambda: _("swings against something"),
+    Support.SUSPENDED: lambda: _("swings against something"),
+    Support.ISOLATED: lambda: _("hits something"),
+}
+
+
+def state_word(state: Harm, scene: Scene) -> str:
+    """Return a state in words, of an object that is held as the scene says."""
+    if state is Harm.LEAVES:
+        support = scene.support
+        return _LEAVES[support]() if support in _LEAVES else _("slides off or into something")
     return _STATES[state]()
 
 
-def _sentence(found: Likelihood) -> str:
+def _sentence(found: Likelihood, scene: Scene) -> str:
     """Say what is likeliest to harm it, and how likely any harm is."""
     band = _BANDS[found.band]()
     if not found.harm:
@@ -250,4 +261,4 @@ def _sentence(found: Likelihood) -> str:
         if found.band in _RATHER
         else _("Harm is %(band)s; if it comes to that, it most likely %(harm)s.")
     )
-    return said_so % {"band": band, "harm": _STATES[Harm(found.harm)]()}
+    return said_so % {"band": band, "harm": state_word(Harm(found.harm), scene)}

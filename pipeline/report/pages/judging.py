@@ -97,16 +97,16 @@ def fragility_views(assessment: Assessment, units: Units, *, drawn: bool) -> tup
     told = [f for f in assessment.fragilities if f.state in ("", HARM)]
     # Of what is only bounded there is no curve.
     views = [_view(f, number if drawn and i == 0 and not f.bound else "", units) for i, f in enumerate(told)]
-    states = _state_chances(assessment.fragilities)
+    states = _state_chances(assessment)
     return tuple(replace(view, numbers=f"{view.numbers} {states}".strip()) for view in views)
 
 
-def _state_chances(curves: Sequence[Fragility]) -> str:
+def _state_chances(assessment: Assessment) -> str:
     """Say how likely an object is to come to each state within 50 years; "" where nobody knows."""
-    told = [(f.state, f.chances) for f in curves if f.state and f.state != HARM]
+    told = [(f.state, f.chances) for f in assessment.fragilities if f.state and f.state != HARM]
     known = [
         _("%(state)s %(chance)s (%(low)s to %(high)s)")
-        % ({"state": state_word(Harm(state))} | dict(zip(_ENDS, map(_percent, chances), strict=True)))
+        % ({"state": state_word(Harm(state), assessment.scene)} | dict(zip(_ENDS, map(_percent, chances), strict=True)))
         for state, chances in told
         if chances is not None
     ]
