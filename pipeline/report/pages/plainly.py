@@ -55,7 +55,8 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     str
         Of a measure that is not known here, as one of another package, its title.
     """
-    told, numbers = _advised(advice, units)
+    of_weight = times_weight(advice)
+    told, numbers = _advised(advice, units, of_weight=of_weight)
     told += [said(row.care) for row in fixing_strengths().values() if row.care in advice.sentence]
     told += [said(one) for one in SAID_AS_IT_IS if one in advice.sentence]
     if FINISHED in advice.sentence:
@@ -63,7 +64,11 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     if OF_MEAN in advice.sentence:
         told.append(_("That is for the mean of the earthquakes: in the worst of them it moves %(worst)s.") % numbers)
     if HEAVIEST in advice.sentence:
-        heaviest = _("That is for %(heaviest)s, the most that it may weigh; %(weight)s is likelier.") % numbers
+        heaviest = (
+            _("That is %(likely)s if it weighs %(weight)s, as is likeliest, and %(most)s if %(heaviest)s, the most.")
+            if of_weight
+            else _("That is for %(heaviest)s, the most that it may weigh; %(weight)s is likelier.")
+        ) % numbers
         told.append(heaviest if AT_BEST in advice.sentence else f"{_('Weigh it first.')} {heaviest}")
     if NAMED_FIRST in advice.sentence:
         told.append(_("Before that, say what it is: for another kind of object this may not be enough."))
@@ -82,9 +87,6 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
 def brief_measure(advice: Recommendation, units: Units) -> str:
     """Return what is advised as a list of many objects says it: what to do, and what to find out before.
 
-    Where nobody knows what an object weighs, a force is told in times its weight: it holds for whatever the scales say,
-    and the force on a solid block of its size, a tonne for an andiron, is no number to work by.
-
     Parameters
     ----------
     advice, units
@@ -99,7 +101,11 @@ def brief_measure(advice: Recommendation, units: Units) -> str:
 
 
 def times_weight(advice: Recommendation) -> str:
-    """Return a force that is for the most that an object may weigh, in times its weight; "" for any other."""
+    """Return a force that is for the most that an object may weigh, in times its weight; "" for any other.
+
+    Where nobody knows what an object weighs it holds for whatever the scales say, and the force on a solid block of its
+    size, a tonne for an andiron, is no number to work by.
+    """
     heaviest, force = (advice.parameters.get(name, 0.0) for name in ("heaviest", "force"))
     if HEAVIEST not in advice.sentence or heaviest <= 0.0 or force <= 0.0:
         return ""
@@ -124,7 +130,9 @@ def _advised(
     write = by_hand(units)
     numbers = {name: write(name, value, advice.units.get(name, "")) for name, value in advice.parameters.items()}
     if of_weight:
-        numbers["force"] = of_weight
+        heaviest, weight, force = (advice.parameters[name] for name in ("heaviest", "weight", "force"))
+        numbers["most"], numbers["force"] = numbers["force"], of_weight
+        numbers["likely"] = write("force", force * weight / heaviest, advice.units.get("force", ""))
     told = [_("First have what it stands in fastened.")] if ANCHORED in advice.sentence else []
     if HELD_FIRST in advice.sentence:
         told.append(_("First record what holds it now as installed."))
@@ -179,7 +187,7 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
         "hold %(force)s. Give it a slack safety line too."
     ),
     "friction_isolator": lambda: _("Stand it on a low-friction pad, with %(clearance)s free on all sides."),
-    "horizontal_isolator": lambda: _("Have it put on an isolator that moves by up to %(stroke)s."),
+    "horizontal_isolator": lambda: _("Have it fastened to an isolator that moves by up to %(stroke)s."),
     "rotational_isolator": lambda: _("Have it mounted on an elastic pad."),
     "strengthen": lambda: _("Have its weakest part strengthened, and its base fastened to hold %(force)s sideways."),
     "remove": lambda: _("Take it off display, or have an engineer design its mount."),

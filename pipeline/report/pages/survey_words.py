@@ -59,6 +59,8 @@ def survey_sentence(tally: Tally, seconds: float) -> str:
     on = ngettext("on %(count)s object", "on %(count)s objects", tally.wished) % {"count": count(tally.wished)}
     told = [
         _("%(measurements)s %(objects)s may change what is decided.") % {"measurements": measurements, "objects": on}
+        if tally.worth
+        else _("No one measurement would change what is decided.")
     ]
     if tally.waste:
         others = ngettext(
