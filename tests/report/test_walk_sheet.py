@@ -9,7 +9,7 @@ from unicodedata import normalize
 import pytest
 from pypdf import PdfReader
 
-from pipeline.mitigate.saying import HEAVIEST
+from pipeline.mitigate.saying import ANCHORED, ENGINEER, HEAVIEST
 from pipeline.quantities import G
 from pipeline.records import Recommendation
 from pipeline.report import render
@@ -272,6 +272,13 @@ def test_a_force_on_what_nobody_weighed_is_told_in_times_its_weight() -> None:
     weighed = replace(one, sentence=alone)
     assert numbers_to_set(weighed, Units("cm")) == "to hold 1000\u202fkg"
     assert brief_measure(weighed, Units("cm")) == "Fasten its base: the mount must hold 1000\u202fkg sideways."
+
+
+def test_what_comes_before_a_measure_is_on_the_sheet() -> None:
+    """Wax in a case that falls holds nothing, and nobody ties down a tonne by the sheet."""
+    one = advice(force=(100.0, "N"))
+    told = numbers_to_set(replace(one, sentence=f"{ANCHORED} {ENGINEER} {{force}}"), Units("cm"))
+    assert told == "first have what it stands in fastened; an engineer designs it; to hold 11\u202fkg"
 
 
 def test_a_gallery_that_is_a_number_is_called_one(tmp_path: Path) -> None:

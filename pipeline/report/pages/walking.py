@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from string import Formatter
 
 from pipeline.mitigate.by_class import NAMED_FIRST
+from pipeline.mitigate.saying import ANCHORED, ENGINEER, HELD_FIRST, UPPER_FIRST
 from pipeline.planning.errands import deciding
 from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Recommendation
@@ -26,6 +27,14 @@ _TITLE = 60
 _ROUGHER = frozenset({"surface", "grip_pad"})
 """Measures by which an object slides less: more friction is better."""
 
+# Who walks with the sheet sets dots in a case that is loose, or starts on an engineer's work, if nothing says so.
+_BEFORE = (
+    (ANCHORED, lambda: _("first have what it stands in fastened")),
+    (HELD_FIRST, lambda: _("first record what holds it now")),
+    (UPPER_FIRST, lambda: _("first fix its upper body")),
+    (ENGINEER, lambda: _("an engineer designs it")),
+)
+
 _FOLLOWS = frozenset({"movement", "margin", "acceleration", "rotation", "cg_height"})
 """Numbers in the sentences of measures that follow from a measure: nobody sets them."""
 
@@ -41,7 +50,7 @@ class WalkRow:
     what : str
         What to do, in `WORDS` words at most.
     numbers : str
-        What to set, such as "4 pieces; to hold 19 kg"; "" for nothing.
+        What comes before, and what to set, such as "4 pieces; to hold 19 kg"; "" for nothing.
     ask : str
         What is worth measuring on an object to act on, "" for nothing.
     photo : str
@@ -190,7 +199,7 @@ def few(text: str) -> str:
 
 
 def numbers_to_set(advice: Recommendation, units: Units) -> str:
-    """Return the numbers of a measure that somebody sets, in the order in which its sentence names them.
+    """Return what is to be done before a measure, and the numbers that somebody sets, in the order of its sentence.
 
     Parameters
     ----------
@@ -200,7 +209,8 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
         The reader's.
     """
     named = dict.fromkeys(name for _text, name, _form, _how in Formatter().parse(advice.sentence) if name)
-    told, write, pieces, of_weight = list[str](), by_hand(units), "", times_weight(advice)
+    told = [phrase() for sentence, phrase in _BEFORE if sentence in advice.sentence]
+    write, pieces, of_weight = by_hand(units), "", times_weight(advice)
     for name in named:
         # The page has the moment too; whoever buys a clamp asks what it must hold.
         beside = name == "moment" and "force" in advice.parameters
