@@ -1,6 +1,6 @@
 """The sheet to walk a gallery with: what to do there object by object, in few words, and the number to set."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from string import Formatter
 
@@ -28,7 +28,7 @@ _ROUGHER = frozenset({"surface", "grip_pad"})
 """Measures by which an object slides less: more friction is better."""
 
 # Who walks with the sheet sets dots in a case that is loose, or starts on an engineer's work, if nothing says so.
-_BEFORE = (
+_BEFORE: tuple[tuple[str, Callable[[], str]], ...] = (
     (ANCHORED, lambda: _("first have what it stands in fastened")),
     (HELD_FIRST, lambda: _("first record what holds it now")),
     (UPPER_FIRST, lambda: _("first fix its upper body")),
