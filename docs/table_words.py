@@ -44,6 +44,8 @@ TABLE_WORDS = {
     "class_weights": "What each sign says for each class: logarithms of odds, found from labelled objects.",
     "slender": "How much of an object of a class is about as slender as its critical section, by share of its height.",
     "stakes": "What is at stake: weights of the classes of value and of a person, and the energy that is dangerous.",
+    "limits": "How much shelves of glass, floors, wax, putty, ballast and loose furniture are trusted with: judgement, "
+    "with how far other judgements would have it.",
     "minutes": "How long a measurement takes at the object, in minutes.",
     "surfaces": "What objects stand on: by which words records tell it, alone or beside what is stood on, and on which "
     "furniture it is met by chance.",

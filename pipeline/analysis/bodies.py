@@ -1,22 +1,45 @@
 """What is known of the shape of a thing besides its class: a post, a folding screen, a block of one stone, a pair."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from pipeline.analysis.mounts import MountGuess
-from pipeline.records import Furniture, Item, Support
+from pipeline.records import Estimate, Furniture, Item, Support
+from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import Material, ObjectClass
-from pipeline.tables.body_rows import PAIR, SCREEN, BodyRow, body_of
+from pipeline.tables.body_rows import PAIR, SCREEN, STANDS, BodyRow, body_of
 
 SOFT = ("inflated", "feathers")
 """Materials of which rocking harms nothing: judgement."""
 
 
-LEAF = 0.05
-"""Depth over height below which the recorded depth of a folding screen is that of one leaf: judgement."""
+_FOLDED = (0.2, 0.1, 0.4)
+"""Depth over height of a folding screen as it stands: leaves of 0.4 of its height, folded by 15 to 75 degrees."""
+
+_FOOT = (0.25, 0.12, 0.4)
+"""The same of a stand that bears a flat thing, such as a shield: as deep as keeps it upright (judgement)."""
+
+LEAF, FLAT = 0.05, 0.2
+"""Depth over height below which the recorded depth of a folding screen is that of one leaf, and that of a thing on a
+stand is its own and not that of the stand: judgement."""
+
+
+def stands_deep(shape: BodyRow) -> Callable[[float], Estimate] | None:
+    """Return what says how deep a body of some height stands [m], where its depth is not that; None of others."""
+    said = {SCREEN: (_FOLDED, say.SCREEN_FOLDED), **dict.fromkeys(STANDS, (_FOOT, say.STAND_FOOT))}.get(shape.body)
+    if said is None:
+        return None
+    shares, phrase = said
+
+    def deep(height: float) -> Estimate:
+        best, low, high = (share * height for share in shares)
+        return Estimate.assumed(best, low, high, "m", phrase(share=shares), "judgement")
+
+    return deep
 
 
 def as_it_stands(item: Item, shape: BodyRow | None) -> Item:
-    """Return a record without the depth of a single leaf, where a folding screen stands: folded it is deeper.
+    """Return a record without a depth that is no footing: of one leaf of a folding screen, of a shield on its stand.
 
     Parameters
     ----------
@@ -25,8 +48,10 @@ def as_it_stands(item: Item, shape: BodyRow | None) -> Item:
     shape : BodyRow or None
         What is known of its shape.
     """
-    leaf = shape is not None and shape.body == SCREEN and (item.depth_m or 0.0) < LEAF * (item.height_m or 0.0)
-    return replace(item, depth_m=None) if leaf else item
+    if shape is None or (shape.body != SCREEN and shape.body not in STANDS):
+        return item
+    thin = (item.depth_m or 0.0) < (LEAF if shape.body == SCREEN else FLAT) * (item.height_m or 0.0)
+    return replace(item, depth_m=None) if thin and (shape.body == SCREEN or item.depth_m) else item
 
 
 def on_floor(item: Item, shape: BodyRow | None) -> Item:

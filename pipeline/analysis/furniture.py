@@ -19,6 +19,7 @@ from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.furniture_rows import ANY, STANDING, FurnitureRow, UsualFurniture, usual_furniture
 from pipeline.tables.held_rows import words_for
+from pipeline.tables.limit_rows import limit
 from pipeline.tables.rows import any_of
 from pipeline.tables.surface_rows import surfaces_in
 
@@ -46,14 +47,8 @@ TALL = 0.6
 STANDS = (Support.FREESTANDING, Support.FASTENED, Support.ISOLATED)
 """How what bears on its furniture is held."""
 
-GLASS_BEARS = 20.0
-"""Mass [kg] that a shelf of glass mostly bears: judgement, makers' tables for 8 mm over a metre say 15 to 30."""
-
-FLOOR_BEARS, SPREAD = 500.0, 1.0
-"""Load [kg/m2] that floors of museums are made for (5 kN/m2: EN 1991-1-1, C3), and area that bears a load [m2].
-
-What is narrower than a square metre is borne by as much: judgement.
-"""
+FLOOR_BEARS = 500.0
+"""Load [kg/m2] that floors of museums are made for (5 kN/m2: EN 1991-1-1, C3)."""
 
 WHAT_HANGS = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what hangs from above"}
 """What is said of furniture to be usual for, where it is so for whatever hangs."""
@@ -239,21 +234,26 @@ def in_furniture(scene: Scene, house: HouseEffect, values: AssumedValues) -> Sce
     return replace(scene, parameters={**scene.parameters, **known}, assumptions=(*scene.assumptions, *notes))
 
 
+def row_of_loads(row: FurnitureRow) -> FurnitureRow:
+    """Return the row that says what furniture bears and takes: the museum's own, or else Kouros's of that kind."""
+    return row if row.bears is not None or row.takes is not None else assumed().furniture[row.key]
+
+
 def _overloads(scene: Scene, row: FurnitureRow) -> tuple[str, ...]:
     """Return the doubt that what an object stands on bears it, by the best estimate of its mass; () for none."""
     mass, item = scene.parameters.get("mass"), scene.item
     if mass is None or scene.support not in STANDS:
         return ()
-    bears = (row if row.bears is not None or row.takes is not None else assumed().furniture[row.key]).bears
+    bears, glass = row_of_loads(row).range("bears"), limit("glass_shelf")
     indoors = scene.furniture in (Furniture.SHOWCASE, Furniture.SHELF)
-    if indoors and mass.value > GLASS_BEARS and "glass" in surfaces_in(item.surface_material, of_surface=True):
-        return (say.HEAVY_FOR_GLASS(mass=mass.value, bears=GLASS_BEARS),)
+    if indoors and mass.value > glass.value and "glass" in surfaces_in(item.surface_material, of_surface=True):
+        return (say.HEAVY_FOR_GLASS(mass=mass.value, bears=glass),)
     if bears is not None:
-        if mass.value <= bears:
+        if mass.value <= bears.value:
             return ()
         return (say.HEAVY_FOR_FURNITURE(mass=mass.value, furniture=row.title, bears=bears),)
     area = (item.width_m or item.depth_m or 0.0) * (item.depth_m or item.width_m or 0.0)
-    load = mass.value / max(area, SPREAD)
+    load = mass.value / max(area, limit("floor_spread").value)
     if scene.furniture is not Furniture.FLOOR or load <= FLOOR_BEARS:
         return ()
     return (say.HEAVY_FOR_FLOOR(load=load, bears=FLOOR_BEARS),)

@@ -5,6 +5,7 @@ fills far less than the same thing of wood or clay.  What makes it lighter makes
 that one must not be counted without the other.
 """
 
+import re
 from math import pi
 
 from pipeline.records import Estimate, Item, Origin, Support
@@ -27,6 +28,14 @@ _CLOTH = (0.3, 1.5, 5.0)
 _SCREEN = (2.0, 5.0, 15.0)
 """The same of a folding screen that stands: paper or silk over a lattice of wood, to leather and lacquered boards."""
 
+
+_SCROLL = re.compile(
+    r"\b(?:hanging scrolls?|kakemono|kakejiku|thangka|tangka|banner|flag|pennant|Hängerolle|Rollbild|Thangka|Fahne|"
+    r"rouleau suspendu|bannière|drapeau|rotolo|stendardo|bandiera|rollo colgante|estandarte|bandera)\b|"
+    r"掛軸|掛幅|立轴|족자",
+    re.IGNORECASE,
+)
+"""What hangs without a frame, though its class has one."""
 
 CLOTH, FRAMED = "paper", "framed"
 """The material of cloth and leather, and the class of what a frame holds."""
@@ -66,12 +75,15 @@ def mass_of(
     """
     if item.mass_kg is not None:
         return Estimate.measured(item.mass_kg, "kg")
-    box, own = _outline(item, row), None if shape is not None else _shell_fill(item, row, material)
+    shaped = shape is not None and shape.fill is not None
+    box, own = _outline(item, row), None if shaped else _shell_fill(item, row, material)
     screen = shape is not None and shape.body == SCREEN
     fill = own or row.filled
     # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
     by_volume = fill is not None and item.depth_m is not None and material.name != UNKNOWN
-    cloth = material.name == CLOTH and row.name != FRAMED and support is Support.HUNG and not thick
+    scroll = _SCROLL.search(f"{item.object_name} {item.title}") is not None
+    unframed = scroll or (row.name != FRAMED and not thick)
+    cloth = material.name == CLOTH and unframed and support is Support.HUNG
     wall = (_CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
     face = {Support.HUNG: wall, Support.SUSPENDED: (_SUSPENDED, say.MASS_OF_SUSPENDED)}
     per_area, face_phrase = (_SCREEN, say.MASS_OF_SCREEN) if screen else face.get(support, (None, None))

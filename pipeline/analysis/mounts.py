@@ -21,6 +21,9 @@ from pipeline.tables.mount_rows import MountRow, mount_rows
 BULKY, LAID = 0.35, 0.2
 """Smallest over largest size, and largest size [m], from which on a thing stands rather than lies: judgement."""
 
+THIN = 0.15
+"""Smallest over largest size below which what lies in cases leans on its stand: judgement."""
+
 TALL, DEEP = 1.2, 0.3
 """Height and least size [m] from which on what is held by mounts stands on a base of its own: judgement."""
 
@@ -97,6 +100,9 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = 
         way = MOUNTED_BY.get(item.support)
         if way is None or (way is Mount.SECURED and item.section_width_m is not None):
             return None
+        if way is Mount.STANDING and row.name == rows[Mount.LYING].kind and _thin(item):
+            # A disc or a plaque on a stand does not stand on its edge.
+            way = Mount.LEANING
         return MountGuess(rows[way], Origin.STATED if "held" in house.stated else Origin.MEASURED)
     # Miniatures and plaques that are small enough lie in their case.
     other = rows[Mount.LYING if cased and max(sizes_known(item).values(), default=LAID) < LAID else Mount.UNKNOWN]
@@ -105,6 +111,12 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = 
         usual = rows[Mount.STANDING]
     note = f"{say.MOUNT(mount=usual.title, told=row.told)}; {say.NOT_RECORDED()}"
     return MountGuess(usual, Origin.ASSUMED, note)
+
+
+def _thin(item: Item) -> bool:
+    """Say whether a thing is so thin that it leans on whatever it is said to stand on."""
+    sizes = sizes_known(item).values()
+    return len(sizes) > 1 and min(sizes) < THIN * max(sizes)
 
 
 def _bulky(item: Item) -> bool:

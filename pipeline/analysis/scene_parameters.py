@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from pipeline.analysis.bodies import SOFT
+from pipeline.analysis.bodies import SOFT, stands_deep
 from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths, rolling
 from pipeline.analysis.furniture import furniture_of
@@ -12,14 +12,18 @@ from pipeline.analysis.masses import mass_of, solid_mass
 from pipeline.analysis.mounts import MountGuess, mount_estimates
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
-from pipeline.analysis.usual import base_of, clearance_of, friction_of, own_damping, wall_damping_of
+from pipeline.analysis.told import line_of
+from pipeline.analysis.usual import base_of, clearance_of, friction_of, own_damping, shelved, wall_damping_of
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
 from pipeline.records import Estimate, Item, Origin, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import Material, ObjectClass
-from pipeline.tables.body_rows import SCREEN, BodyRow
+from pipeline.tables.body_rows import BodyRow
+
+FROM_ABOVE = "chandelier"
+"""Class of which the room is taken of whatever hangs from above: nothing stands as near as beside what stands."""
 
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
@@ -88,7 +92,7 @@ class SceneParameters:
         shape: BodyRow | None = None,
     ) -> None:
         self.mount, self.shape = mount, shape
-        self.sizes = Sizes.of(item, row, screen=shape is not None and shape.body == SCREEN)
+        self.sizes = Sizes.of(item, row, deep=None if shape is None else stands_deep(shape))
         # All is found with the best of what is not recorded, and then made as uncertain as that is.
         self.item, self.row, self.support, self.values, self.house = self.sizes.filled, row, support, values, house
         self.material = material_of(item, values)
@@ -143,14 +147,18 @@ class SceneParameters:
     def _pendulum(self) -> None:
         item = self.item
         length = self._length("suspension_length_m", "suspension_ratio", "length from hook to centre of gravity")
+        line = line_of(item.displayed) if self.support is Support.SUSPENDED else None
         if length is None and item.height_m is None:
             self.missing.append("height or suspension length")
         elif length is None and item.height_m is not None:
             half = 0.5 * item.height_m
             note = f"{say.LENGTH_FROM_HOOK()}; {say.OTHER_HOOKS(more=_CORD)}"
             length = Estimate.assumed(half, 0.5 * half, half + _CORD, "m", note, "judgement")
+            if line is not None:
+                note = say.LENGTH_DISPLAYED(line=line)
+                length = Estimate(line + half, "m", Origin.DERIVED, line, line + 2.0 * half, note)
         self._keep("length", length)
-        if item.suspension_length_m is None:
+        if item.suspension_length_m is None and line is None:
             self._spread("length", "height")
         damping = self._known("damping", "damping", "-")
         if damping is None and self.support is Support.HUNG:
@@ -262,7 +270,10 @@ class SceneParameters:
     def _clearance(self) -> None:
         clearance = self._known("clearance_m", "clearance", "m")
         if clearance is None and "clearance" not in self.found:
-            clearance = clearance_of(self.values, self.row.name)
+            hangs = self.support is Support.SUSPENDED and not self.row.own
+            clearance = shelved(self.item, self.row) or clearance_of(
+                self.values, FROM_ABOVE if hangs else self.row.name
+            )
         self._keep("clearance", clearance)
 
     def _weigh(self, *sizes: str) -> None:
@@ -299,7 +310,8 @@ class SceneParameters:
         low, lever, high = (max(one - height, 0.0) for one in (cg.low, cg.value, cg.high))
         self._keep("lever", Estimate(lever, "m", Origin.DERIVED, low, high, note))
         self.found |= found.section.estimates(item.orientation_deg is not None)
-        solid = None if self.shape is not None else solid_mass(item, self.row, self.material)
+        shaped = self.shape is not None and self.shape.fill is not None
+        solid = None if shaped else solid_mass(item, self.row, self.material)
         self._keep("solid_mass", solid)
         if solid is not None:
             # What bends is as stiff for its mass as the solid one.

@@ -1,7 +1,7 @@
 """Sizes of an object: those recorded, and those assumed from a recorded one by the proportions of its class."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import exp, hypot, log
@@ -14,9 +14,6 @@ from pipeline.tables.proportion_rows import proportions
 
 SIZES = ("height", "width", "depth")
 """Sizes of an object as it stands, as parameters of a scene and, with _m, as fields of a record."""
-
-_FOLDED = (0.2, 0.1, 0.4)
-"""Depth over height of a folding screen as it stands: leaves of 0.4 of its height, folded by 15 to 75 degrees."""
 
 PLAN = ("width", "depth")
 """Those of its plan."""
@@ -103,8 +100,8 @@ class Sizes:
     round: bool = False
 
     @classmethod
-    def of(cls, item: Item, row: ObjectClass, *, screen: bool = False) -> "Sizes":
-        """Return the sizes of an object of a class, of a folding screen as it stands folded."""
+    def of(cls, item: Item, row: ObjectClass, *, deep: Callable[[float], Estimate] | None = None) -> "Sizes":
+        """Return the sizes of an object of a class; ``deep`` says how deep one of its height stands [m]."""
         hung = face_of(item) if row.support == Support.HUNG else None
         if hung is not None:
             item = replace(item, depth_m=None)
@@ -112,10 +109,8 @@ class Sizes:
         # What is round is as deep as it is wide, whether that is known or assumed.
         asked = [name for name in SIZES if known and name not in known and not (row.round and _plan_known(name, known))]
         found = {name: ratio_of(row, name, known) if name != "height" or hung is None else hung for name in asked}
-        if screen and "depth" in found and item.height_m is not None:
-            best, low, high = (share * item.height_m for share in _FOLDED)
-            note = say.SCREEN_FOLDED(share=_FOLDED)
-            found["depth"] = Estimate.assumed(best, low, high, "m", note, "judgement")
+        if deep is not None and "depth" in found and item.height_m is not None:
+            found["depth"] = deep(item.height_m)
         return cls(item, {name: one for name, one in found.items() if one is not None}, row.round)
 
     @cached_property

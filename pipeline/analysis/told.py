@@ -18,6 +18,17 @@ SLENDEREST = 9.0
 _QUOTED = 80
 """Characters of the museum's words that a note repeats."""
 
+_LINES = (
+    r"(?:wires?|cables?|chains?|ropes?|cords?|rods?|lines?|Kette[n]?|Seile?n?|Stahlseile?n?|Drähten?|Draht|chaînes?|"
+    r"câbles?|cordes?|caten[ae]|cav[io]|cadenas?|cables?|αλυσίδα|συρματόσχοινο)"
+)
+_METRES = {"m": 1.0, "cm": 0.01, "ft": 0.3048, "feet": 0.3048}
+_LONG = r"(\d{1,3}(?:[.,]\d{1,3})?)\s?(m|cm|ft|feet)\b"
+_HUNG_BY = re.compile(
+    rf"\b{_LINES} (?:of|von|de|di|da|,) ?{_LONG}|(?<![\d.,]){_LONG}(?:[ -]long)? {_LINES}\b", re.IGNORECASE
+)
+"""How long a line is that something hangs by: "by a chain of 2 m", "on 3 m cables"."""
+
 _ABOVE = (Support.HUNG, Support.SUSPENDED)
 
 _TO_STAND_ON = (Furniture.FLOOR, Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
@@ -46,6 +57,21 @@ def as_displayed(item: Item) -> Item:
         furniture_anchorage=item.furniture_anchorage or told.anchorage,
         surface_material=item.surface_material or " and ".join(surfaces_in(item.displayed)),
     )
+
+
+def line_of(words: str) -> float | None:
+    """Return how long the lines are that a thing hangs by [m], by the words for its display; None where none says it.
+
+    Parameters
+    ----------
+    words : str
+        For its display.
+    """
+    found = _HUNG_BY.search(words)
+    if found is None:
+        return None
+    number, unit = (one for one in found.groups() if one is not None)
+    return float(number.replace(",", ".")) * _METRES[unit.lower()] or None
 
 
 def held_as_displayed(item: Item, support: Support) -> bool:

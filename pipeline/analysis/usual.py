@@ -7,7 +7,9 @@ from functools import cache, lru_cache
 from pipeline.records import Estimate, Furniture, Item
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, span, tables_of
+from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
 from pipeline.tables.bending_rows import bending
+from pipeline.tables.limit_rows import limit
 
 _BASES = tuple(
     re.compile(pattern, re.IGNORECASE)
@@ -59,6 +61,23 @@ def clearance_of(values: AssumedValues, object_class: str) -> Estimate | None:
         return None
     note = say.CLEARANCE(room=row.room, told=row.told)
     return Estimate.assumed(row.room.value, row.room.low, row.room.high, "m", note, row.room.source)
+
+
+def shelved(item: Item, row: ObjectClass) -> Estimate | None:
+    """Return how far a book may slide off its shelf [m] (limits.csv); None for what stands on no bookshelf."""
+    if WHEN_HELD not in row.models or not _BOOKSHELF.search(f"{item.displayed}; {item.case}; {item.title}"):
+        return None
+    room = limit("book_room")
+    source = f"limits.csv ({room.source})"
+    return Estimate.assumed(room.value, room.low, room.high, "m", say.BOOK_ROOM(room=room), source)
+
+
+_BOOKSHELF = re.compile(
+    r"\b(?:book ?shel(?:f|ves)|bookcases?|Bücherregale?|Bücherschr(?:a|ä)nke?|bibliothèque|rayonnages?|libreria|"
+    r"scaffal[ei]|librería|estantería)\b|本棚|書架|βιβλιοθήκη",
+    re.IGNORECASE,
+)
+"""What says that books stand in a row on a shelf."""
 
 
 @lru_cache(maxsize=4096)

@@ -1,19 +1,21 @@
 """What is said besides the sentence of a measure: what comes first, who does it, and what is to be found out before."""
 
 import re
-from math import inf
 
+from pipeline.analysis.furniture import row_of_loads
 from pipeline.analysis.told import held_as_displayed
 from pipeline.mitigate.measures import Measure
-from pipeline.mitigate.measures.adhesives import SLIGHT
 from pipeline.mitigate.measures.base import knows_section
 from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE, hung_by
 from pipeline.mitigate.measures.fixings import FINISHED, finishes, on_glass
 from pipeline.mitigate.proposals import STANDING, Candidate, Deficiency, Numbers
 from pipeline.mitigate.trials import TrialRunner
+from pipeline.quantities import G
 from pipeline.records import Estimate, Furniture, Mount, Origin, Scene
 from pipeline.records import phrases as say
+from pipeline.tables import Range
 from pipeline.tables.assumed import AssumedValues
+from pipeline.tables.limit_rows import limit
 
 ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
 """Follows the sentence of a measure that holds at one level only."""
@@ -47,9 +49,6 @@ HELD_FIRST = (
 UNWEIGHED = 2.0
 """Largest over best estimate of an assumed mass from which on whoever builds for a force is told so."""
 
-TAKES_ALONG = 10.0
-"""Mass [kg] from which on nothing is fixed to loose furniture: that may be as light, and falls with it; judgement."""
-
 STANDS_ON = "See that what it stands on is fastened itself: nobody says that it is."
 """Follows the sentence of a measure that fixes as much to furniture of which nobody says whether it is fastened."""
 
@@ -72,6 +71,9 @@ TOO_MUCH = (
 )
 """Follows the sentence of a measure that asks more of a case, a plinth or a shelf than that takes (furniture.csv)."""
 
+PERHAPS_TOO_MUCH = "A light one of such furniture does not take that: see first what it is made of."
+"""Follows the sentence of a measure that asks for more than the low end of what its furniture takes."""
+
 ON_GLASS = (
     "It stands on glass, into which nothing is screwed: have the mount hold on to the edges of its shelf, or stand it "
     "on a solid deck."
@@ -84,13 +86,18 @@ LID = "Its lid lies loose: hold that too, by dots of wax or a tie."
 UNSEEN = "Nobody knows its weakest part: whoever makes the mount must see that it bears that."
 """Follows the sentence of a measure that holds an open frame, whose weakest section is not known."""
 
+CREEPS = "So heavy a thing creeps on it: look at it twice a year, and hold it otherwise once it has moved."
+"""Follows the sentence of a measure that sticks down what some would trust to no wax (limits.csv, stuck_mass)."""
+
 IN_WARMTH = "Wax and putty give way in warmth: not under hot lamps, and not in the sun."
 """Follows the sentence of a measure that sticks something down."""
 
 BY_HAND = "Try by hand whether it holds: where it gives, use more."
 """Follows the sentence of dots under what is so light that more of them cost less than to weigh it."""
 
-SAID_AS_IT_IS = (TOO_MUCH, STANDS_ON, ON_GLASS, LID, UNSEEN, IN_WARMTH, BY_HAND, TWICE, FOURFOLD)
+SAID_AS_IT_IS = (
+    TOO_MUCH, PERHAPS_TOO_MUCH, STANDS_ON, ON_GLASS, LID, UNSEEN, CREEPS, IN_WARMTH, BY_HAND, TWICE, FOURFOLD,
+)  # fmt: skip
 """Of what follows the ones that a page says as they are."""
 
 ANCHORED = "Fasten what it stands in to the floor or a wall first."
@@ -139,11 +146,11 @@ def said_besides(
         first.append(HELD_FIRST)
     if {say.TWO_BODIES(), say.STACKED()} & set(scene.assumptions):
         first.append(UPPER_FIRST)
-    asked = _asked(measure, scene, numbers)
+    asked, takes = _asked(measure, scene, numbers), _takes(scene, values)
     if asked >= ENGINEERED:
         first.append(ENGINEER)
-    elif asked >= _takes(scene, values):
-        more.append(TOO_MUCH)
+    elif takes is not None and asked >= takes.low:
+        more.append(TOO_MUCH if asked >= takes.value else PERHAPS_TOO_MUCH)
     if measure.for_room:
         more.append(hung_by(scene).strip())
     more += [said for said, holds in _besides(measure, scene, values) if holds]
@@ -157,7 +164,7 @@ def said_besides(
         added |= {"heaviest": (mass.high, "kg"), "weight": (mass.value, "kg")}
         more.append(HEAVIEST)
     if at_best or candidate.at_best:
-        light = measure.sticks and mass is not None and mass.high <= SLIGHT
+        light = measure.sticks and mass is not None and mass.high <= limit("slight_mass").value
         more.append(AT_BEST if at_best else BY_HAND if light else SIZED)
     return tuple(first), tuple(filter(None, more)), added
 
@@ -166,13 +173,14 @@ def _besides(measure: Measure, scene: Scene, values: AssumedValues) -> tuple[tup
     """Return what may follow the sentence of a measure that touches an object, each with whether it holds."""
     item, stands = scene.item, scene.support in STANDING
     mass = scene.parameters.get("mass")
-    heavy = mass is not None and mass.value >= TAKES_ALONG
+    heavy = mass is not None and mass.value >= limit("takes_along").value
     on_furniture = scene.furniture not in (None, Furniture.FLOOR) and scene.anchorage is None
     made = measure.fastens and not measure.sticks and stands and scene.mount in (None, Mount.STANDING)
     frame = made and scene.mount is None and not knows_section(scene)
     lidded = scene.object_class in _WITH_LIDS and _LIDDED.search(f"{item.object_name} {item.title} {item.medium}")
     return (
         (IN_WARMTH, measure.sticks),
+        (CREEPS, measure.sticks and mass is not None and mass.value >= limit("stuck_mass").low),
         (FINISHED, measure.touches and stands and bool(finishes(item, values))),
         (ON_GLASS, made and on_glass(item)),
         (UNSEEN, frame),
@@ -186,9 +194,13 @@ def _asked(measure: Measure, scene: Scene, numbers: Numbers) -> float:
 
     By the best estimate of its mass: of what nobody weighed the most that it may weigh says nothing of who does it.
     """
+    mass = scene.parameters.get("mass")
+    if "times" in numbers and mass is not None:
+        # A mount that holds a thing in any direction is told in times its weight.
+        return numbers["times"][0] * mass.value * G
     if "force" not in numbers:
         return 0.0
-    mass, (force, _) = scene.parameters.get("mass"), numbers["force"]
+    force, _ = numbers["force"]
     share = mass.value / mass.high if mass is not None and "pieces" not in numbers and mass.high > 0.0 else 1.0
     half = scene.parameters.get("half_width")
     pull = 0.0
@@ -198,10 +210,10 @@ def _asked(measure: Measure, scene: Scene, numbers: Numbers) -> float:
     return max(force, pull) * share
 
 
-def _takes(scene: Scene, values: AssumedValues) -> float:
-    """Return the force [N] that what an object stands on takes; infinite where nothing is known against it."""
+def _takes(scene: Scene, values: AssumedValues) -> Range | None:
+    """Return the force [N] that what an object stands on takes; None where nothing is known against it."""
     row = None if scene.furniture is None else values.furniture.get(scene.furniture.value)
-    return row.takes if row is not None and row.takes is not None and scene.support in STANDING else inf
+    return row_of_loads(row).range("takes") if row is not None and scene.support in STANDING else None
 
 
 def _unweighed(mass: Estimate) -> bool:

@@ -29,11 +29,12 @@ from pipeline.mitigate.proposals import (
     company,
     refused,
 )
-from pipeline.mitigate.saying import ANCHORED, ONLY_HERE, TAKES_ALONG, said_besides
+from pipeline.mitigate.saying import ANCHORED, ONLY_HERE, said_besides
 from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
 from pipeline.models.common import N_
 from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
+from pipeline.tables.limit_rows import limit
 from pipeline.tables.mount_rows import mount_rows
 
 Unit = tuple[Deficiency, ...]
@@ -440,7 +441,7 @@ def _filled(sentence: str, words: Mapping[str, str]) -> str:
 def _takes_along(one: Deficiency) -> bool:
     """Say whether what an object would be fixed to is loose, and light enough to be taken along by it."""
     mass = one.scene.parameters.get("mass")
-    return mass is not None and mass.value >= TAKES_ALONG and may_fall(one.findings)
+    return mass is not None and mass.value >= limit("takes_along").value and may_fall(one.findings)
 
 
 def _band_unknown(scene: Scene) -> bool:

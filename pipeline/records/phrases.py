@@ -15,7 +15,7 @@ TWO_BODIES = Clause(
     "upper one stands loose, it falls sooner"
 )
 STACKED = Clause(
-    "it is a stack of stones, which are followed as one body: where no pins hold them together, the upper ones slide "
+    "it is a stack, whose pieces are followed as one body: where nothing holds them together, the upper ones slide "
     "and rock on those below, and fall sooner"
 )
 HEAVY_FOR_FURNITURE = Clause(
@@ -65,6 +65,7 @@ LEANS_ON = Clause("height of the centre of gravity: it leans on its {size}")
 GRIP = Clause("grip of its mount: {grip:-} times its weight sideways, assumed: it {mount}")
 OFF_ITS_MOUNT = Clause("clearance: it comes off its mount once it has moved {room:cm} on it, assumed")
 CLEARANCE = Clause("clearance: {room:cm} to neighbour, wall or edge, assumed for: {told}")
+BOOK_ROOM = Clause("clearance: it falls off its shelf once it has moved {room:cm}, assumed for books in a row")
 FRICTION = Clause("friction: {friction:-}, {tables} for {material} on {surface}")
 NOT_MEASURED = Clause("not measured")
 NO_HARM_BY_ROCKING = Clause("rocking itself is not taken to harm it, assumed for: {told}")
@@ -73,11 +74,12 @@ MASS_OF_FRAMED = Clause("mass: {mass:kg/m2} of the face of a framed work, assume
 MASS_OF_CLOTH = Clause("mass: {mass:kg/m2} of the face of a cloth on a wall, assumed")
 MASS_OF_SUSPENDED = Clause("mass: {mass:kg/m2} of the face of what hangs from above, assumed")
 MASS_OF_SCREEN = Clause("mass: {mass:kg/m2} of the face of a folding screen, assumed")
+STAND_FOOT = Clause("depth: that of its stand, {share:-} of its height, assumed")
 SCREEN_FOLDED = Clause("depth not recorded: a folding screen stands {share:-} of its height deep, assumed")
 MASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed")
 MASS_OF_CLASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of its outline ({aside}), assumed")
 MASS_OF_SHELL = Clause(
-    "mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed for what is hollow or of sheet"
+    "mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed for such a thing of that material"
 )
 STRESS = Clause("allowable stress: {material}, {stress:MPa}, condition factor {factor:-}")
 STRESS_UNSEEN = Clause("allowable stress: {material}, {stress:MPa}, condition factor 1 (not recorded)")
@@ -90,6 +92,9 @@ HELD_WHILE_IT_BENDS = Clause("its base is taken as held while it bends, estimate
 
 LENGTH_FROM_HOOK = Clause(
     "length from hook to centre of gravity: half its height, assumed for: hung from its upper edge"
+)
+LENGTH_DISPLAYED = Clause(
+    "length from hook to centre of gravity: a line of {line:m}, by the words for its display, and half its height"
 )
 OTHER_HOOKS = Clause("a hook further down gives half of that, a cord from a rail up to {more:m} more")
 NO_DAMPING = Clause("damping: none, as the paper takes it for chandeliers")

@@ -22,7 +22,7 @@ TABLES = tuple(
     f"{name}.csv"
     for name in (
         "bending", "classes", "contacts", "damping", "efforts", "fills", "fixings", "friction", "furniture",
-        "hangings", "isolators", "materials", "measures", "mounts", "proportions", "slender", "stakes",
+        "hangings", "isolators", "limits", "materials", "measures", "mounts", "proportions", "slender", "stakes",
         "usual_furniture", "usual_hangings",
     )
 )  # fmt: skip

@@ -20,6 +20,9 @@ STACK = "stack"
 SCREEN = "screen"
 """A folding screen, of which its face weighs."""
 
+STANDS = ("harness", "costume", "stand")
+"""Stands of what cannot stand by itself, which are as deep as they have to be."""
+
 _NUMBERS = (
     *(f"{kind}_{end}" for kind in ("cg", "base", "section") for end in ("ratio", "low", "high")),
     *("fill", "fill_low", "fill_high"),
@@ -43,7 +46,8 @@ class BodyRow(TableRow):
     taller_than : float
         Height from which it holds [m].
     cg_ratio, base_ratio, section_ratio, fill : float or None
-        As in classes.csv, with the ends of their ranges; of its base all bears that is within the range.
+        As in classes.csv, with the ends of their ranges; of its base all bears that is within the range.  Without a
+        fill that of its class and its material holds.
     round : bool
         Whether it is as deep as it is wide.
     rocking_harms : bool
@@ -96,6 +100,9 @@ class BodyRow(TableRow):
         numbers = {
             name: getattr(self, name) for name in (*_NUMBERS, "section", "title", "round", "rocking_harms", "source")
         }
+        if self.fill is None:
+            # How much of its outline such a thing fills its class and its material say.
+            numbers = {name: one for name, one in numbers.items() if not name.startswith("fill")}
         out = row.model_copy(update={**numbers, "base_source": ""})
         for name in _FOUND:
             # What was worked out of the class is not of this body.

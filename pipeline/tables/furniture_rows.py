@@ -73,7 +73,7 @@ def _above_0(cell: float | None) -> float | None:
 Above0 = Annotated[Optional, AfterValidator(_above_0)]
 """A cell that holds a mass or a force, or nothing."""
 
-_RANGES = ("frequency", "damping", "half_width", "cg_height", "friction")
+_RANGES = ("frequency", "damping", "half_width", "cg_height", "friction", "bears", "takes")
 
 _BODY = ("half_width", "cg_height", "friction", "shelf_height")
 
@@ -98,10 +98,9 @@ class FurnitureRow(AssumedRow):
         gravity with what stands in it [m], and friction on its floor [-].
     shelf_height : float or None
         At which objects stand in it or on it [m].
-    bears : float or None
-        Mass that it mostly bears [kg]; what is heavier is doubted.
-    takes : float or None
-        Force that fixings on it may bring into it [N]; of what asks for more that is said.
+    bears, takes : float or None, with _low and _high
+        Mass that it mostly bears [kg]: what is heavier is doubted.  Force that fixings on it may bring into it [N]: of
+        what asks for more that is said, and of what asks for more than the low end that it may be.
     """
 
     # Columns that a museum's own table leaves out are checked as if they were empty.
@@ -131,7 +130,11 @@ class FurnitureRow(AssumedRow):
     friction_high: FloorFriction = None
     shelf_height: Length = None
     bears: Above0 = None
+    bears_low: Above0 = None
+    bears_high: Above0 = None
     takes: Above0 = None
+    takes_low: Above0 = None
+    takes_high: Above0 = None
 
     @field_validator(*(f"{name}_high" for name in _RANGES))
     @classmethod

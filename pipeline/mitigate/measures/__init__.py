@@ -11,7 +11,7 @@ from pipeline.mitigate.measures.adhesives import Putty, Wax
 from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.ballast import Ballast
 from pipeline.mitigate.measures.base import Measure
-from pipeline.mitigate.measures.brace import Brace
+from pipeline.mitigate.measures.brace import Armature, Brace
 from pipeline.mitigate.measures.chocks import Chocks
 from pipeline.mitigate.measures.clearance import Clearance
 from pipeline.mitigate.measures.close_hooks import CloseHooks
@@ -81,6 +81,7 @@ MEASURES: Registry[type[Measure]] = Registry(
         Clamps,
         Fasten,
         Brace,
+        Armature,
         CloseHooks,
         Hold,
         Restrain,

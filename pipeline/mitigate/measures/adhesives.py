@@ -7,6 +7,7 @@ from pipeline.mitigate.proposals import Deficiency, Proposal, refused
 from pipeline.mitigate.trials import TrialRunner
 from pipeline.models.common import N_
 from pipeline.records import Scene
+from pipeline.tables.limit_rows import limit
 
 LEVER = 2.0 / 3.0
 """Moment about an edge of an elastic layer, per its area, its strength, and the distance of its middle from the edge.
@@ -15,17 +16,6 @@ The tension grows evenly from the edge to the far side, where it is the strength
 width 2b, by the area, is 2/3 t b.  Three and more equal pieces evenly round a circle of radius r about the middle give
 t b (1 + (r/b)^2 / 2) / (1 + r/b), which is never less than 0.73 t b.
 """
-
-
-TALLEST = 1.2
-"""Height [m] above which nobody trusts a thing to wax or putty, though it might hold: judgement."""
-
-
-HEAVIEST = 12.0
-"""Mass [kg] above which nothing is trusted to wax or putty, which creep: judgement, about 25 lb."""
-
-SLIGHT = 2.0
-"""Most mass [kg] of what is so light that more dots cost less than to weigh it: judgement."""
 
 
 class _Dots(Fixing):
@@ -46,17 +36,17 @@ class _Dots(Fixing):
         row = runner.values.classes.get(one.scene.object_class)
         if row is not None and row.section == "legs":
             return refused(N_("it stands on legs, which have no room for it under them"))
-        if (one.scene.item.height_m or 0.0) > TALLEST:
+        if (one.scene.item.height_m or 0.0) > limit("stuck_height").value:
             return refused(N_("it is taller than what is stuck down"))
         mass = one.scene.parameters.get("mass")
-        if mass is not None and mass.value > HEAVIEST:
+        if mass is not None and mass.value > limit("stuck_mass").value:
             return refused(N_("it is heavier than what is stuck down"))
         return super().propose(one, runner)
 
     def ample(self, scene: Scene) -> bool:
         """Say whether it is so light that nobody weighs it: more dots make up for that."""
         mass = scene.parameters["mass"]
-        return mass.low < mass.high <= SLIGHT
+        return mass.low < mass.high <= limit("slight_mass").value
 
     def room(self, scene: Scene, worst: bool) -> float:
         """Return the share of its footing: a round one across the narrower side, the least that it may be."""

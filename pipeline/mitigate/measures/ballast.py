@@ -10,12 +10,10 @@ from pipeline.models.common import N_
 from pipeline.quantities import Quantity
 from pipeline.records import Estimate, Origin, Scene, Support
 from pipeline.records import phrases as say
+from pipeline.tables.limit_rows import limit
 
 STEPS = (0.2, 0.4, 0.7, 1.0)
 """Ballast that is tried, over the most that there may be."""
-
-HEAVIEST = 25.0
-"""Most ballast [kg] that is put into anything: what one person lifts (judgement)."""
 
 SEEN_THROUGH = frozenset({"glass"})
 """Materials that no ballast is put into: rows of materials.csv."""
@@ -85,7 +83,7 @@ class Ballast(Measure):
         )
 
     def _most(self, one: Deficiency) -> float:
-        return min(HEAVIEST, self.row.limit * one.scene.parameters["mass"].value)
+        return min(limit("ballast_mass").value, self.row.limit * one.scene.parameters["mass"].value)
 
     def _unsuited(self, one: Deficiency, runner: TrialRunner) -> str:
         scene = one.scene

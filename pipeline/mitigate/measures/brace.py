@@ -12,6 +12,12 @@ a quarter of what it bears at its base where nothing else holds it.  Its lowest 
 (3.927 / 1.875)^2 = 4.39 where the brace is at its top.  A brace gives, and a figure is no even bar: the quarter may be
 a half, and the factor on the frequency 2.
 
+Held at two heights, 0.4 and 0.8 of its own, it bears most where it stands out beyond the upper one,
+
+.. math:: M = \frac{w (0.2 L)^2}{2} = 0.04 \, \frac{w L^2}{2}
+
+and its lowest natural frequency is 12 times as high; neither contact bears more than 0.43 of the push.
+
 References
 ----------
 Blevins, R. D. (1979). Formulas for natural frequency and mode shape. Van Nostrand Reinhold. Table 8-1: fixed and free,
@@ -35,14 +41,17 @@ from pipeline.models.common import N_
 from pipeline.records import Estimate, Scene, Support
 from pipeline.records import phrases as say
 
-LEVER = (0.15, 0.25, 0.5)
-"""Bending over that without the brace: low, best, high; the best is the bound of an even bar, the others judgement."""
+LEVER, AT_TWO = (0.15, 0.25, 0.5), (0.04, 0.08, 0.2)
+"""Bending over that without the brace, held at one height and at two: low, best, high.
 
-STIFFER = (2.0, 3.0, 4.39)
+The best of the one is the bound of an even bar, and the low end of the other; the others are judgement.
+"""
+
+STIFFER, STIFFER_AT_TWO = (2.0, 3.0, 4.39), (3.0, 5.0, 12.0)
 """Factor on its lowest natural frequency: low, best, high; the last is of an even bar, the others judgement."""
 
-ABOVE = 1.2
-"""Height of the brace over that of the centre of gravity: of what is even, 0.6 of the height."""
+ABOVE, BELOW, TOP = 1.2, 0.8, 1.6
+"""Heights of the brace, and of the lower and the upper of two, over that of the centre of gravity."""
 
 
 class Brace(Measure):
@@ -54,13 +63,15 @@ class Brace(Measure):
     limit_unit = "m"
     fastens = True
     touches = True
+    bending, stiffer = LEVER, STIFFER
+    heights = (ABOVE,)
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held at its base, its section bending a quarter as much, and swaying faster."""
         scene = held(scene)
-        found = {"lever": _braced(scene.parameters["lever"], LEVER)}
+        found = {"lever": _braced(scene.parameters["lever"], self.bending)}
         if "frequency" in scene.parameters:
-            found["frequency"] = _braced(scene.parameters["frequency"], STIFFER)
+            found["frequency"] = _braced(scene.parameters["frequency"], self.stiffer)
         return with_parameters(scene, **found)
 
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
@@ -77,12 +88,20 @@ class Brace(Measure):
         tall = scene.item.height_m or 2.0 * scene.parameters["cg_height"].value
         if tall < self.row.limit:
             return refused(say.TOO_LOW_TO_BRACE(height=self.row.limit))
-        numbers = {
-            "force": (scene.parameters["mass"].high * runner.push, "N"),
-            "height": (ABOVE * scene.parameters["cg_height"].value, "m"),
-        }
+        cg = scene.parameters["cg_height"].value
+        numbers = {"force": (scene.parameters["mass"].high * runner.push, "N")}
+        numbers |= {name: (at * cg, "m") for name, at in zip(self.gives[1:], self.heights, strict=True)}
         trial = Trial(self.in_place(one, numbers))
         return Proposal(tuple(Candidate(numbers, (trial,), at_best=at_best) for at_best in (False, True)))
+
+
+class Armature(Brace):
+    """Hold it along its back at two heights, and at its base: it neither rocks nor slides, and hardly bends."""
+
+    name = "armature"
+    gives = ("force", "height", "second")
+    bending, stiffer = AT_TWO, STIFFER_AT_TWO
+    heights = (BELOW, TOP)
 
 
 def _braced(estimate: Estimate, factors: tuple[float, float, float]) -> Estimate:

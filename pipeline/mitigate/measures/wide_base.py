@@ -71,6 +71,8 @@ class WideBase(Measure):
             return UNKNOWN_SECTION
         half = scene.parameters["half_width"]
         width = round_up(SPARE * 2.0 * runner.tilt(scene) * scene.parameters["cg_height"].high)
+        if width <= 2.0 * half.high:
+            return refused(N_("its base may be as wide as the plate already: measure it"))
         allowed = 2.0 * self.row.limit * half.value
         if width > allowed:
             return refused(f"{say.PLATE(width=width)}; {say.LENGTH_ALLOWED(limit=allowed)}")

@@ -45,6 +45,7 @@ _WORDS = {
     "clamps": (lambda: _("clamp it"), lambda: _("clamped")),
     "fasten": (lambda: _("fasten it"), lambda: _("fastened")),
     "brace": (lambda: _("brace it"), lambda: _("braced")),
+    "armature": (lambda: _("brace it at two heights"), lambda: _("braced at two heights")),
     "close_hooks": (lambda: _("close its hooks"), lambda: _("its hooks closed")),
     "hold": (lambda: _("hold it on its mount"), lambda: _("held on its mount")),
     "restrain": (lambda: _("fix it to the wall"), lambda: _("fixed to the wall")),

@@ -179,6 +179,10 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
         "Brace it from behind at a height of %(height)s, where the brace must hold %(force)s sideways, and fasten its "
         "base."
     ),
+    "armature": lambda: _(
+        "Have an armature made for its back, which holds it at %(height)s and %(second)s and bears %(force)s sideways, "
+        "and fasten its base."
+    ),
     "close_hooks": lambda: _("Close its hooks, so that it cannot jump out of them."),
     "hold": lambda: _("Have a mount-maker hold it on its mount, for %(times)s times its weight."),
     "restrain": lambda: _("Fix it to the wall at its lower corners too: the fixings must hold %(force)s together."),
