@@ -7,7 +7,7 @@ from pipeline.analysis.mounts import MountGuess
 from pipeline.records import Estimate, Furniture, Item, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import Material, ObjectClass
-from pipeline.tables.body_rows import PAIR, SCREEN, STANDS, BodyRow, body_of
+from pipeline.tables.body_rows import ON_EDGE, PAIR, SCREEN, STANDS, BodyRow, body_of
 
 SOFT = ("inflated", "feathers")
 """Materials of which rocking harms nothing: judgement."""
@@ -96,4 +96,6 @@ def body(
     if row.own or not stands:
         return None
     text = f"{item.object_name} {item.title}"
-    return body_of(text, words.partition(":")[0], row.name, material.name, item.height_m or 0.0)
+    found = body_of(text, words.partition(":")[0], row.name, material.name, item.height_m or 0.0)
+    # How thick a frame is says nothing of what an altarpiece stands on.
+    return None if found is not None and found.body in ON_EDGE and item.depth_m is None else found

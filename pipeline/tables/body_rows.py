@@ -23,6 +23,9 @@ SCREEN = "screen"
 STANDS = ("harness", "costume", "stand")
 """Stands of what cannot stand by itself, which are as deep as they have to be."""
 
+ON_EDGE = ("panel", "slab")
+"""What hangs by its class and stands on its edge, as deep as it is recorded."""
+
 _NUMBERS = (
     *(f"{kind}_{end}" for kind in ("cg", "base", "section") for end in ("ratio", "low", "high")),
     *("fill", "fill_low", "fill_high"),

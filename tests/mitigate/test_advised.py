@@ -1,7 +1,7 @@
 """68 objects beside what an engineer and a mount-maker wrote down of each before any was run.
 
-What they wrote stays as it was written (tests/data/collections/advised_expected.csv); where Kouros says otherwise and is
-right, or nobody can say, that is named here with the reason.
+What they wrote stays as it was written (tests/data/collections/advised_expected.csv); where Kouros says otherwise and
+is right, or nobody can say, that is named here with the reason.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def scenes() -> Mapping[str, Scene]:
 
 @pytest.fixture(scope="module")
 def advised(scenes: Mapping[str, Scene]) -> Mapping[str, tuple[float, list[Recommendation]]]:
-    """The probability of harm and the advice under a motion of 0.4 g and 38 cm/s, spectrum-compatible with EN 1998-1."""
+    """The probability of harm and the advice under one motion of 0.4 g and 38 cm/s that fits EN 1998-1."""
     level = [LevelMotions("design", "max", (read_motion(resource("site_motions", "demo_suite"))[4],))]
     aim, context, found = HarmAim(0.1, Sampling(128)), Context(Threads(1)), list(scenes.values())
     _, findings = assess(found, level, context)

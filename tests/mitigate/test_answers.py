@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from pipeline.analysis.assess import assess
@@ -18,7 +19,7 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import changed
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
-from pipeline.mitigate.measures.brace import LEVER, STIFFER
+from pipeline.mitigate.measures.brace import AT_TWO, BELOW, LEVER, STIFFER, STIFFER_AT_TWO, TOP
 from pipeline.mitigate.saying import HEAVIEST, UNWEIGHED
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
@@ -242,6 +243,51 @@ def test_a_brace_leaves_a_quarter_of_the_bending_of_an_even_bar() -> None:
     alone = brentq(lambda x: np.cos(x) * np.cosh(x) + 1.0, 1.0, 3.0)
     propped = brentq(lambda x: np.tan(x) - np.tanh(x), 3.2, 4.5)
     assert STIFFER[2] == pytest.approx((propped / alone) ** 2, abs=0.005)
+
+
+def test_an_armature_is_the_right_answer(motion: Motion) -> None:
+    """The section bears less than a quarter of the bending, and more than a fifth: what a brace leaves is too much."""
+    push = float(np.hypot(*motion.acceleration[:2]).max())
+    bending, weight = 20.0 * push * 0.5 / (0.1**3 / 6.0), 20.0 * G / 0.01
+    weak = replace(TOWER, object_name="Statue", allowable_stress_pa=0.22 * bending - weight)
+    advice = solve(weak, motion)
+    assert advice.measure == "armature"
+    assert "Brace it above its middle" in rejected(advice)
+    assert advice.parameters == pytest.approx({"force": 20.0 * push, "height": 0.4, "second": 0.8})
+    (check,) = advice.checks
+    assert check.demand == pytest.approx(0.08 * bending - weight)
+
+
+def test_an_even_bar_held_at_two_heights_bears_a_twentyfifth() -> None:
+    """By finite elements that are exact in their nodes: bending, what the contacts bear, and the lowest frequency."""
+    n, h = 200, 1.0 / 200
+    stiff = np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h],
+                      [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]) / h**3  # fmt: skip
+    heavy = np.array([[156, 22 * h, 54, -13 * h], [22 * h, 4 * h * h, 13 * h, -3 * h * h],
+                      [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h * h, -22 * h, 4 * h * h]]) * h / 420  # fmt: skip
+    load = np.array([h / 2, h * h / 12, h / 2, -h * h / 12])
+    k, m, f = np.zeros((2 * n + 2, 2 * n + 2)), np.zeros((2 * n + 2, 2 * n + 2)), np.zeros(2 * n + 2)
+    for at in range(0, 2 * n, 2):
+        k[at : at + 4, at : at + 4] += stiff
+        m[at : at + 4, at : at + 4] += heavy
+        f[at : at + 4] += load
+
+    def found(*held: float) -> tuple[float, float, float]:
+        lost = [0, 1, *(2 * round(a * n) for a in held)]
+        free = np.setdiff1d(np.arange(2 * n + 2), lost)
+        u = np.zeros(2 * n + 2)
+        u[free] = np.linalg.solve(k[np.ix_(free, free)], f[free])
+        ends = [stiff @ u[at : at + 4] - load for at in range(0, 2 * n, 2)]
+        bent = max(max(abs(end[1]), abs(end[3])) for end in ends)
+        borne = max((abs((k @ u - f)[one]) for one in lost[2:]), default=0.0)
+        w2 = eigh(k[np.ix_(free, free)], m[np.ix_(free, free)], eigvals_only=True, subset_by_index=[0, 0])[0]
+        return float(bent), float(borne), float(np.sqrt(w2))
+
+    alone, held = found(), found(0.4, 0.8)
+    assert held[0] / alone[0] == pytest.approx(AT_TWO[0], abs=1e-6)
+    assert held[1] < 0.43
+    assert held[2] / alone[2] == pytest.approx(STIFFER_AT_TWO[2], rel=0.04)
+    assert (BELOW * 0.5, TOP * 0.5) == (0.4, 0.8)
 
 
 def test_strengthening_is_the_right_answer(motion: Motion) -> None:

@@ -11,7 +11,7 @@ import pytest
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
-from pipeline.analysis.furniture import FLOOR_BEARS
+from pipeline.analysis.furniture import FLOOR_BEARS, row_of_loads
 from pipeline.analysis.likelihood.sampling import likelihoods
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
@@ -25,6 +25,7 @@ from pipeline.mitigate.saying import (
     IN_WARMTH,
     LID,
     ON_GLASS,
+    PERHAPS_TOO_MUCH,
     SIZED,
     STANDS_ON,
     TOO_MUCH,
@@ -36,6 +37,7 @@ from pipeline.records import Anchorage, Furniture, Item, Motion, Mount, Recommen
 from pipeline.records import phrases as say
 from pipeline.report.pages.plainly import plain_measure
 from pipeline.report.units import Units
+from pipeline.tables.assumed import assumed
 
 from .scenes import HEAVY, TOWER, demo_motion, solve
 
@@ -97,6 +99,38 @@ def test_furniture_takes_less_than_a_floor(motion: Motion) -> None:
     assert TOO_MUCH in shelf.sentence
     assert TOO_MUCH in plain_measure(shelf, Units())
     assert shelf.parameters["force"] > 300.0
+
+
+def test_between_a_light_shelf_and_a_usual_one_it_is_to_be_looked_at(motion: Motion) -> None:
+    """A light one takes 100 N and a usual one 300: 20 kg ask for the latter, 6 kg for what lies between."""
+    item = replace(TOWER, allowable_stress_pa=5e8, surface_material="wood", furniture=Furniture.SHELF)
+    some = {mass: solve(replace(item, mass_kg=mass), motion) for mass in (1.0, 6.0, 20.0)}
+    asked = {mass: max(one.parameters["force"], one.parameters["moment"] / 0.2) for mass, one in some.items()}
+    assert asked[1.0] < 100.0 < asked[6.0] < 300.0 < asked[20.0]
+    told = {mass: (PERHAPS_TOO_MUCH in one.sentence, TOO_MUCH in one.sentence) for mass, one in some.items()}
+    assert told == {1.0: (False, False), 6.0: (True, False), 20.0: (False, True)}
+
+
+def test_a_museums_furniture_takes_what_kouros_says_unless_it_says_so_itself() -> None:
+    """Both of what it bears and of what it takes: a row of one's own without them is about something else."""
+    kouros = assumed().furniture["shelf"]
+    ends = [f"{name}{end}" for name in ("bears", "takes") for end in ("", "_low", "_high")]
+    bare = kouros.model_copy(update=dict.fromkeys(ends))
+    told = bare.model_copy(update={"takes": 50.0, "takes_low": 40.0, "takes_high": 60.0})
+    assert row_of_loads(bare).range("takes") == kouros.range("takes") != told.range("takes")
+    assert row_of_loads(told) is told
+
+
+@pytest.mark.parametrize(("mass", "engineered"), [(100.0, False), (900.0, True)])
+def test_a_mount_told_in_times_a_weight_is_an_engineers_too(motion: Motion, mass: float, engineered: bool) -> None:
+    """The lid of a sarcophagus leans against a wall: its mount bears its weight and its push in any direction."""
+    lid = Item("1", "G", "Lid of a sarcophagus", object_name="sarcophagus lid", medium="marble", height_m=0.95,
+               width_m=2.1, depth_m=0.28, mass_kg=mass, displayed="leaning against the wall",
+               furniture=Furniture.FLOOR)  # fmt: skip
+    advice = likely(lid, [motion])
+    assert advice.measure == "hold"
+    assert (advice.parameters["times"] * mass * G >= ENGINEERED) is engineered
+    assert advice.sentence.startswith(ENGINEER) is engineered
 
 
 def test_what_it_is_fixed_to_has_to_stand_too(motion: Motion) -> None:
