@@ -25,6 +25,7 @@ fixed and held.
 """
 
 from collections.abc import Mapping
+from typing import ClassVar
 
 from pipeline.mitigate.measures.base import (
     NOT_FREE,
@@ -58,13 +59,13 @@ class Brace(Measure):
     """Brace it from behind at or above its middle, and hold its base: it neither rocks nor slides, and bends less."""
 
     name = "brace"
-    gives: tuple[str, ...] = ("force", "height")
+    gives: ClassVar[tuple[str, ...]] = ("force", "height")
     limits = 1
     limit_unit = "m"
     fastens = True
     touches = True
     bending, stiffer = LEVER, STIFFER
-    heights: tuple[float, ...] = (ABOVE,)
+    heights: ClassVar[tuple[float, ...]] = (ABOVE,)
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held at its base, its section bending a quarter as much, and swaying faster."""
