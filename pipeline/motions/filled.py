@@ -85,7 +85,7 @@ def filled(row: Array, dt: float) -> str | None:
 
 
 def _smoothest(row: Array, order: int, count: float, size: float) -> tuple[float, int, int, float]:
-    """How much smoother than both its sides a stretch is, up to SMOOTHER; its samples, the first of them; how much in all.
+    """How much smoother than both its sides a stretch is, up to SMOOTHER; its samples; their first; how much in all.
 
     The longest by SMOOTHER or more, else the smoothest.
     """
