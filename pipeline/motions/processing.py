@@ -14,6 +14,7 @@ from pipeline.motions.baseline import (
     resample,
     two_segment_baseline,
 )
+from pipeline.motions.corner_range import CornerRange, corner_range
 from pipeline.motions.corners import choose_corner
 from pipeline.motions.doubts import DRIFTS
 from pipeline.motions.filtering import highpass, lowpass, remove_baseline
@@ -118,13 +119,16 @@ def process(
         level = motion.acceleration.mean(axis=1, keepdims=True)
         before = motion.changed(motion.acceleration - level, "mean removed")
     corners: tuple[float | None, float | None] = (None, None)
+    others = None
     if recording.processed:
         if record.raw_only:
             keys = ", ".join(record.raw_only)
             raise InputError(f"{keys}: the files say that the record is processed; drop what is for raw records")
         motion = motion.called(motion.name, "processed by its source: no baseline correction, no filter")
     else:
-        motion, corners = _filtered(_flattened(motion, record, recording.begins), record, recording)
+        flat = _flattened(motion, record, recording.begins)
+        motion, corners = _filtered(flat, record, recording)
+        others = _other_corners(flat, corners[0], recording)
     if record.resample_s is not None:
         if recording.processed and record.resample_s > motion.dt:
             raise InputError(
@@ -168,6 +172,8 @@ def process(
         motion = Motion(
             motion.dt, motion.acceleration, motion.name, motion.steps, source, motion.start, 0.01 * record.v_max_cm_s
         )
+    if others is not None:
+        motion = motion.called(motion.name, others.scaled(total))
     peak = float(np.abs(motion.acceleration).max())
     if peak > PGA_MOST:
         raise InputError(f"scale: the scaled motion peaks at {peak / G:.3g} g, above 20 g; lower the scale")
@@ -234,6 +240,18 @@ def _filtered(motion: Motion, record: Record, recording: Recording) -> tuple[Mot
             raise InputError(f"lowpass_hz {record.lowpass_hz:g} must be above the high-pass corner of {corner:.4g} Hz")
         motion = motion.changed(*lowpass(motion.acceleration, motion.dt, record.lowpass_hz))
     return motion, (corner, record.lowpass_hz)
+
+
+def _other_corners(flat: Motion, corner: float | None, recording: Recording) -> CornerRange | None:
+    """What hangs on the corner, in the span that is used; None where the record is not filtered."""
+    if corner is None:
+        return None
+    seen = slice(None)
+    if recording.window is not None:
+        first, last = (round((at - recording.begins) / flat.dt) for at in recording.window)
+        seen = slice(max(first, 0), last + 1)
+    turned, _ = rotate(flat.acceleration, *recording.azimuths)
+    return corner_range(turned, flat.dt, corner, seen)
 
 
 def _used(motion: Motion, record: Record, recording: Recording) -> Motion:
