@@ -307,7 +307,7 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
         warnings.simplefilter("always")
         try:
             # Escaped, because obspy expands wildcards; never unpacked, so that what is read is what was hashed.
-            stream = obspy.read(glob.escape(str(file)), check_compression=False)
+            stream = knet.really(file, obspy.read(glob.escape(str(file)), check_compression=False))
         except MotionError:  # Kouros's own readers say file, line and remedy themselves
             raise
         except Exception as error:  # on a broken file obspy's readers raise anything
