@@ -16,7 +16,7 @@ from pipeline.motions.baseline import (
 )
 from pipeline.motions.corner_range import CornerRange, corner_range
 from pipeline.motions.corners import choose_corner
-from pipeline.motions.doubts import DRIFTS
+from pipeline.motions.doubts import DRIFTS, TOO_COARSE
 from pipeline.motions.filtering import highpass, lowpass, remove_baseline
 from pipeline.motions.fling import fling_step
 from pipeline.motions.intensity import integrate
@@ -37,6 +37,10 @@ ORTHOGONAL_WITHIN = 2.0
 SKEW_WITHIN = 10.0
 """Degrees that they may be off it at all.  Both directions of the ground follow from any two; but the channels of one
 package are at right angles, so that more than a hasty reading of a compass is an azimuth that is wrong (judgement)."""
+
+COARSEST = 0.025
+"""s between samples from which on a record is doubted (judgement): accelerographs take 50 a second and more, agencies
+print as many, and things in a museum are moved by up to 20 Hz."""
 
 TRANSIENT = 0.001
 """Share of the PGV by which an agency's first velocity may be off the one that its record starts with (rounding)."""
@@ -113,6 +117,8 @@ def process(
     if recording.velocity is not None and record.start_m_s is None:
         start, said = starting_velocity(recording.data, recording.velocity, recording.dt)
         steps += said
+    if recording.dt > COARSEST:
+        steps += (f"sampled every {recording.dt:g} s: shaking above {0.5 / recording.dt:.3g}{TOO_COARSE}",)
     motion = Motion(recording.dt, recording.data, record.name, steps, source, start)
     before = motion
     if not recording.processed:
