@@ -186,19 +186,33 @@ def process(
 
 @motions.command()
 @click.argument("old")
-@click.argument("new")
+@click.argument("new", required=False)
+@click.option(
+    "--corner",
+    metavar="FACTOR",
+    type=float,
+    help="Multiply the high-pass corners of NEW, or of OLD where no NEW is given, by this: 0.5 and 2 show what hangs "
+    "on a choice that another seismologist would have made otherwise.  What its source processed stays as it is.",
+)
 @as_json
 @click.pass_obj
-def compare(options: Options, old: str, new: str, as_json: bool) -> None:
+def compare(options: Options, old: str, new: str | None, corner: float | None, as_json: bool) -> None:
     """Say which measures, and which verdicts of the last run, change when NEW takes the place of OLD.
 
     Example: kouros motions compare site_motions/site site_motions/proposed
+
+    Example: kouros motions compare site_motions/site --corner 0.5
     """
+    from pipeline.operations.workspace import UsageError
     from pipeline.tools.compare_motions import compare_sites
 
+    if new is None and corner is None:
+        raise UsageError("compare needs a second site, or --corner FACTOR")
     settings = _settings(options)
     with options.console() as console:
-        swap = compare_sites(_folder(options, old), _folder(options, new), settings, console)
+        swap = compare_sites(
+            _folder(options, old), _folder(options, old if new is None else new), settings, console, corner=corner
+        )
     if as_json:
         click.echo(json.dumps(asdict(swap), indent=2))
         return

@@ -31,6 +31,9 @@ SENSITIVITY_ALONE = (
 )
 """Ends what is said of counts that are brought to m/s2 by one number."""
 
+TOO_COARSE = " Hz is not in it, and its peak acceleration is too small; take the record as its instrument sampled it"
+"""Ends what is said of a record whose samples are too far apart."""
+
 LARGEST_SCALE = 4.0
 """By which a record is scaled at most without a doubt: a stronger earthquake has other periods and another length."""
 
@@ -59,7 +62,12 @@ def doubts(steps: Sequence[str]) -> tuple[str, ...]:
     for step in steps:
         if UNDECIDED in step:
             found.append("; ".join(step[step.index(UNDECIDED) :].split("; ")[:2]))
-        elif step.startswith(MAY_HOLD) or ALL_USED in step or DRIFTS in step or step.endswith((NO_RECORD, ALIKE)):
+        elif (
+            step.startswith(MAY_HOLD)
+            or ALL_USED in step
+            or DRIFTS in step
+            or step.endswith((NO_RECORD, ALIKE, TOO_COARSE))
+        ):
             found.append(step)
         elif FACTOR in step:
             # Of each component.

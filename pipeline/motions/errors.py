@@ -6,7 +6,7 @@ from typing import ClassVar, Literal, get_args
 
 from pipeline.errors import InputError
 
-Judgement = Literal["clipping", "cut_off", "size", "drift", "orientation", "mixed", "several"]
+Judgement = Literal["clipping", "filled", "cut_off", "size", "drift", "orientation", "mixed", "several"]
 """Refusals that a person may overrule; what is corrupt is refused whatever is accepted."""
 
 JUDGEMENTS: tuple[Judgement, ...] = get_args(Judgement)

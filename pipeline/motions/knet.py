@@ -2,16 +2,52 @@
 
 from __future__ import annotations
 
+import glob
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pipeline.motions.errors import refusal
+from pipeline.motions.formats import columns
 from pipeline.motions.formats.trace_headers import PEAK_TOLERANCE, Orientation
+from pipeline.motions.responses import load_obspy
+from pipeline.motions.unknown import unknown
 
 _DIRECTIONS: dict[str, Orientation] = {"NS": 0.0, "EW": 90.0, "UD": "up"}
 _GAL = 0.01
+
+
+def really(file: Path, stream: Any) -> Any:
+    """Return a file's traces, read by the head in words that it has where obspy takes that for one of K-NET.
+
+    obspy goes by the first words, "Origin Time", which others write as well.
+
+    Parameters
+    ----------
+    file : Path
+        The record file.
+    stream : obspy.Stream
+        As obspy read it.
+
+    Returns
+    -------
+    obspy.Stream
+
+    Raises
+    ------
+    MotionError
+        Of a file that is none of K-NET, and says too little.
+    """
+    if not stream or stream[0].stats._format != "KNET" or "knet" in stream[0].stats:
+        return stream
+    with file.open("rb") as text:
+        if b"Scale Factor" in text.read(2000):
+            return stream
+    if columns.is_format(str(file)):
+        # Its plugin, by name: a reader called by itself leaves the traces without their format.
+        return load_obspy().read(glob.escape(str(file)), format="MOTION_COLUMNS", check_compression=False)
+    raise columns.refused(str(file)) or unknown(file)
 
 
 def complete(file: Path, stream: Any) -> None:

@@ -14,8 +14,9 @@ from pipeline.motions.baseline import (
     resample,
     two_segment_baseline,
 )
+from pipeline.motions.corner_range import CornerRange, corner_range
 from pipeline.motions.corners import choose_corner
-from pipeline.motions.doubts import DRIFTS
+from pipeline.motions.doubts import DRIFTS, TOO_COARSE
 from pipeline.motions.filtering import highpass, lowpass, remove_baseline
 from pipeline.motions.fling import fling_step
 from pipeline.motions.intensity import integrate
@@ -36,6 +37,10 @@ ORTHOGONAL_WITHIN = 2.0
 SKEW_WITHIN = 10.0
 """Degrees that they may be off it at all.  Both directions of the ground follow from any two; but the channels of one
 package are at right angles, so that more than a hasty reading of a compass is an azimuth that is wrong (judgement)."""
+
+COARSEST = 0.025
+"""s between samples from which on a record is doubted (judgement): accelerographs take 50 a second and more, agencies
+print as many, and things in a museum are moved by up to 20 Hz."""
 
 TRANSIENT = 0.001
 """Share of the PGV by which an agency's first velocity may be off the one that its record starts with (rounding)."""
@@ -112,19 +117,24 @@ def process(
     if recording.velocity is not None and record.start_m_s is None:
         start, said = starting_velocity(recording.data, recording.velocity, recording.dt)
         steps += said
+    if recording.dt > COARSEST:
+        steps += (f"sampled every {recording.dt:g} s: shaking above {0.5 / recording.dt:.3g}{TOO_COARSE}",)
     motion = Motion(recording.dt, recording.data, record.name, steps, source, start)
     before = motion
     if not recording.processed:
         level = motion.acceleration.mean(axis=1, keepdims=True)
         before = motion.changed(motion.acceleration - level, "mean removed")
     corners: tuple[float | None, float | None] = (None, None)
+    others = None
     if recording.processed:
         if record.raw_only:
             keys = ", ".join(record.raw_only)
             raise InputError(f"{keys}: the files say that the record is processed; drop what is for raw records")
         motion = motion.called(motion.name, "processed by its source: no baseline correction, no filter")
     else:
-        motion, corners = _filtered(_flattened(motion, record, recording.begins), record, recording)
+        flat = _flattened(motion, record, recording.begins)
+        motion, corners = _filtered(flat, record, recording)
+        others = _other_corners(flat, corners[0], recording)
     if record.resample_s is not None:
         if recording.processed and record.resample_s > motion.dt:
             raise InputError(
@@ -168,6 +178,8 @@ def process(
         motion = Motion(
             motion.dt, motion.acceleration, motion.name, motion.steps, source, motion.start, 0.01 * record.v_max_cm_s
         )
+    if others is not None:
+        motion = motion.called(motion.name, others.scaled(total))
     peak = float(np.abs(motion.acceleration).max())
     if peak > PGA_MOST:
         raise InputError(f"scale: the scaled motion peaks at {peak / G:.3g} g, above 20 g; lower the scale")
@@ -234,6 +246,18 @@ def _filtered(motion: Motion, record: Record, recording: Recording) -> tuple[Mot
             raise InputError(f"lowpass_hz {record.lowpass_hz:g} must be above the high-pass corner of {corner:.4g} Hz")
         motion = motion.changed(*lowpass(motion.acceleration, motion.dt, record.lowpass_hz))
     return motion, (corner, record.lowpass_hz)
+
+
+def _other_corners(flat: Motion, corner: float | None, recording: Recording) -> CornerRange | None:
+    """What hangs on the corner, in the span that is used; None where the record is not filtered."""
+    if corner is None:
+        return None
+    seen = slice(None)
+    if recording.window is not None:
+        first, last = (round((at - recording.begins) / flat.dt) for at in recording.window)
+        seen = slice(max(first, 0), last + 1)
+    turned, _ = rotate(flat.acceleration, *recording.azimuths)
+    return corner_range(turned, flat.dt, corner, seen)
 
 
 def _used(motion: Motion, record: Record, recording: Recording) -> Motion:

@@ -17,6 +17,7 @@ from pipeline.motions import knet
 from pipeline.motions.doubts import NO_RECORD, SENSITIVITY_ALONE
 from pipeline.motions.earthquakes import earthquakes, listed, window_of
 from pipeline.motions.errors import MotionError, judged, refusal
+from pipeline.motions.filled import filled
 from pipeline.motions.formats.trace_headers import channel_code
 from pipeline.motions.joining import Row, aligned, channel_of, check_common, check_together, only_piece
 from pipeline.motions.orientation import by_station, oriented
@@ -166,6 +167,10 @@ def read_record(folder: str | Path, record: Record) -> Recording:
         if flat is not None:
             remedy = "use a record that was not clipped"
             judged(record.accept, "clipping", file, f"record {record.name!r}", flat, remedy, steps)
+        elif (gap := filled(trace.data[seen], trace.stats.delta)) is not None:
+            wrong = f"component {component.axis} ({key!r}) {gap}"
+            remedy = "use the record with its gap told, a window_s that leaves it out, or another record"
+            judged(record.accept, "filled", file, f"record {record.name!r}", wrong, remedy, steps)
         station = None
         if inventory is not None:
             xml = folder / str(record.response)
@@ -302,7 +307,7 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
         warnings.simplefilter("always")
         try:
             # Escaped, because obspy expands wildcards; never unpacked, so that what is read is what was hashed.
-            stream = obspy.read(glob.escape(str(file)), check_compression=False)
+            stream = knet.really(file, obspy.read(glob.escape(str(file)), check_compression=False))
         except MotionError:  # Kouros's own readers say file, line and remedy themselves
             raise
         except Exception as error:  # on a broken file obspy's readers raise anything

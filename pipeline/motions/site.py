@@ -14,6 +14,7 @@ import numpy as np
 from pipeline.cache import MOTIONS, Cache, CacheEntry, key_of
 from pipeline.errors import InputError
 from pipeline.motions.blas import one_thread
+from pipeline.motions.corner_range import FACTORS, corner_range_of
 from pipeline.motions.errors import Judgement, MotionError, judged, refusal
 from pipeline.motions.filtering import remove_baseline
 from pipeline.motions.hazard_file import read_hazard
@@ -164,7 +165,47 @@ def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
     """
     file = manifest_file(folder)
     manifest = load_manifest(file)
-    site = Site(file, manifest, (), kept, _hazard(file, manifest))
+    return _levelled(Site(file, manifest, (), kept, _hazard(file, manifest)))
+
+
+def with_corner(site: Site, factor: float) -> Site:
+    """Return a site with the high-pass corner of each record of the ground that is filtered here times a factor.
+
+    Parameters
+    ----------
+    site : Site
+        The site, with the motions of the ground.
+    factor : float
+        Above 0; records that their source processed, and those that are not filtered, stay as they are.
+
+    Returns
+    -------
+    Site
+
+    Raises
+    ------
+    InputError
+        For a factor that is not above 0, and where no record of the site is filtered here.
+    MotionError
+        As `read_site`.
+    """
+    if not (np.isfinite(factor) and factor > 0.0):
+        raise InputError(f"a factor of the corner must be above 0, not {factor:g}")
+    tables = []
+    for table, level in zip(site.manifest.level, site.levels, strict=True):
+        others = [corner_range_of(one.motion.steps) for one in level.motions]
+        records = tuple(
+            one if other is None else one.model_copy(update={"highpass_hz": factor / FACTORS[0] * other.highpass_hz[0]})
+            for one, other in zip(table.record, others, strict=True)
+        )
+        tables.append(table.model_copy(update={"record": records}))
+    if not any(corner_range_of(one.motion.steps) for level in site.levels for one in level.motions):
+        raise InputError(f"{site.file}: no record of the ground is filtered here, so that no corner was chosen")
+    return _levelled(replace(site, manifest=site.manifest.model_copy(update={"level": tuple(tables)})))
+
+
+def _levelled(site: Site) -> Site:
+    """The site with the motions of the ground, as its manifest asks for them."""
     levels = tuple(
         Level(
             name=level.name,
@@ -177,7 +218,7 @@ def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
                 for j, record in enumerate(level.record)
             ),
         )
-        for i, level in enumerate(manifest.level)
+        for i, level in enumerate(site.manifest.level)
     )
     return replace(site, levels=levels)
 

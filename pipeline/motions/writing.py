@@ -208,7 +208,7 @@ def _record(folder: Path, file: str, motion: Motion, azimuth: float, licence: st
         **({"units": "mm/s2"} if compact else {}),
         **({"vertical": "absent"} if absent else {"vertical": "estimated"} if ESTIMATED in motion.steps else {}),
         "processed": True,
-        "accept": dict.fromkeys(("clipping", "cut_off", "size", "drift"), f"written by Kouros: {told}"),
+        "accept": dict.fromkeys(("clipping", "filled", "cut_off", "size", "drift"), f"written by Kouros: {told}"),
         "source": (source or "Kouros")[:500],
         "licence": (own or licence)[:500],
         "sha256": {file: digest},

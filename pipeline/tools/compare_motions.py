@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from pipeline.collection.database import Database, open_database
-from pipeline.motions.site import Level, Site, read_site
+from pipeline.motions.site import Level, Site, read_site, with_corner
 from pipeline.night.figures import pictures
 from pipeline.night.prepare import admit, run_context
 from pipeline.night.publication import Publication
@@ -73,7 +73,9 @@ class Swap:
     moved: Mapping[str, int]
 
 
-def compare_sites(old: Path, new: Path, settings: Settings | None, progress: Progress) -> Swap:
+def compare_sites(
+    old: Path, new: Path, settings: Settings | None, progress: Progress, *, corner: float | None = None
+) -> Swap:
     """Compare two sites: the measures of their motions, and the verdicts of the last run under one and the other.
 
     Levels are paired by name, and those left over by their place; the motions of a level by their place.
@@ -86,6 +88,8 @@ def compare_sites(old: Path, new: Path, settings: Settings | None, progress: Pro
         Of the museum whose last run is looked at; None compares measures only.
     progress : callable
         Is told what is done, of how much.
+    corner : float or None
+        By which the high-pass corners of the new site are multiplied, of the records that are filtered here.
 
     Returns
     -------
@@ -99,11 +103,14 @@ def compare_sites(old: Path, new: Path, settings: Settings | None, progress: Pro
     """
     kept = None if settings is None else settings.kept
     before, after = read_site(old, kept=kept), read_site(new, kept=kept)
+    told = str(new)
+    if corner is not None:
+        after, told = with_corner(after, corner), f"{new}, high-pass corners times {corner:g}"
     after = replace(after, levels=_renamed(before.levels, after.levels))
     pairs = _pairs(before.levels, after.levels)
     basis, verdicts = _verdicts(before, after, settings, progress)
     words = Counter(f"{_word(v.before)} -> {_word(v.after)}" for v in verdicts)
-    return Swap(f"{before.name} ({old})", f"{after.name} ({new})", pairs, basis, verdicts, dict(words.most_common()))
+    return Swap(f"{before.name} ({old})", f"{after.name} ({told})", pairs, basis, verdicts, dict(words.most_common()))
 
 
 def _word(verdict: object) -> str:

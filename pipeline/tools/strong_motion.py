@@ -1,10 +1,11 @@
 """The seismologist's desk: list, look at, process and accept the records of a site."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pipeline.motions.corner_range import corner_range_of
 from pipeline.motions.doubts import doubts
 from pipeline.motions.errors import Judgement, MotionError
 from pipeline.motions.manifest import GROUND_FLOOR, load_manifest, manifest_file
@@ -142,6 +143,7 @@ def described(one: "Inspection") -> dict[str, Any]:
         "filtered": one.filtered,
         "highpass_hz": one.corners[0],
         "lowpass_hz": one.corners[1],
+        "other_corners": (other := corner_range_of(one.motion.steps)) and asdict(other),
         "measures_before": dict(one.measures_before),
         "measures": dict(one.measures),
         "spectra": {

@@ -159,3 +159,21 @@ def test_compare_says_which_measures_and_verdicts_a_swap_moves(tmp_path: Path) -
     turned = kouros("-q", "motions", "compare", "site", "brief", folder=tmp_path)
     # The other way round the last run has no verdicts under the first site's motions.
     assert "that it did not have on these motions and records" in turned.stdout
+
+
+def test_a_site_is_compared_with_itself_at_another_corner(tmp_path: Path) -> None:
+    """PGVs of the demonstration's record, high-passed at 0.1 and 0.05 Hz by scipy's sosfiltfilt: 28.0 and 34.2 east."""
+    done = kouros("motions", "compare", "demo", "--corner", "0.5", "--json", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    swap = json.loads(done.stdout)
+    assert swap["new"].endswith("high-pass corners times 0.5)")
+    (pair,) = swap["pairs"]
+    before, after = pair["measures"]["pgv_x"]
+    assert (before, after) == pytest.approx((0.280, 0.342), rel=0.01)
+    shown = kouros("motions", "show", "demo", "--json", folder=tmp_path)
+    (record,) = json.loads(shown.stdout)["records"]
+    assert record["other_corners"]["highpass_hz"] == [0.05, 0.2]
+    assert record["other_corners"]["pgd"][1] == pytest.approx(pair["measures"]["pgd_resultant"][1], rel=3e-3)
+    alone = kouros("motions", "compare", "demo", folder=tmp_path)
+    assert alone.returncode == 2
+    assert "needs a second site, or --corner FACTOR" in alone.stderr

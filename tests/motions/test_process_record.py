@@ -217,3 +217,18 @@ def test_a_record_that_is_scaled_far_is_doubtful(steps: tuple[str, ...], told: s
     """Four times and a quarter are as far as suites are chosen; nobody is told of 21.6 by its peaks alone."""
     found = doubts(steps)
     assert [one.partition(" than")[0] for one in found] == ([told] if told else [])
+
+
+@pytest.mark.parametrize(("step", "told"), [(0.02, False), (0.1, True)])
+def test_samples_that_are_too_far_apart_are_doubted(three, write_manifest, step, told):
+    """At 10 samples a second nothing above 5 Hz is told, by the sampling theorem; 50 are what agencies print."""
+    n = round(40.0 / step)
+    rows = [tone(n, amplitude, frequency=0.7, dt=step) for amplitude in (1.0, 2.0, 0.5)]
+    three(*rows, delta=step)
+    (motion,) = read_motion(raw(write_manifest, highpass_hz=0.1))
+    assert [one for one in doubts(motion.steps) if one.startswith("sampled every")] == (
+        [] if not told else [
+            "sampled every 0.1 s: shaking above 5 Hz is not in it, and its peak acceleration is too small; take the "
+            "record as its instrument sampled it"
+        ]
+    )  # fmt: skip

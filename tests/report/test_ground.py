@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
+from pipeline.motions.corner_range import CornerRange
 from pipeline.quantities import G
 from pipeline.report import Units, render
 from pipeline.report.pages.ground import motion_view
@@ -44,6 +45,17 @@ def test_a_measure_without_a_column_is_listed_with_its_unit(name: str, value: fl
     view = motion_view(replace(builder.motion(), measures={name: value}), {}, Units())
     assert view.others == (shown,)
     assert not view.table
+
+
+def test_what_hangs_on_the_corner_is_said_of_the_ground() -> None:
+    step = CornerRange((0.05, 0.2), (0.468, 0.616), (0.137, 0.434)).scaled(1.0)
+    motion = replace(builder.motion(), steps=("high-pass 0.1 Hz", step))
+    assert motion_view(motion, {}, Units()).corner == (
+        "For seismologists: between half and double of the corner of its filter (0.05 and 0.2\u00a0Hz) the resultant "
+        "PGV is 46.8 to 61.6\u202fcm/s and the PGD 13.7 to 43.4\u202fcm. The verdicts are of the corner that was used."
+    )
+    assert not motion_view(replace(motion, floor="attic"), {}, Units()).corner
+    assert not motion_view(builder.motion(), {}, Units()).corner
 
 
 def test_its_own_charts_come_in_the_order_of_the_papers_figures() -> None:

@@ -36,7 +36,7 @@ _STEP_BARE = re.compile(
     rf"{_NUMBER}\s*(s|secs?|seconds?|ms|msec)\b",
     re.I,
 )
-_RATE_BARE = re.compile(rf"\bsampl(?:ing|e) (?:rate|freq\w*\.?)\s+{_NUMBER}\s*(?:hz|sps|samples)\b", re.I)
+_RATE_BARE = re.compile(rf"\bsampl(?:ing|e) (?:rate|freq\w*\.?)(?: ?\(hz\))?\s+{_NUMBER}\s*(?:hz|sps|samples)\b", re.I)
 """Without a colon, where their unit tells that the number is one."""
 
 _RATE = _label(
@@ -54,7 +54,9 @@ _COUNT = _label(
 _UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit|birim|单位|単位|единицы(?: измерения)?", r"(\S.*)")
 _ACCELERATION = r"\b(?:accel\w*|acc.l.ration\w*|acel\w*|beschleunigung\w*|ivme\w*|ускорени\w*)\b"
 _IN = re.compile(
-    rf"(?:{_ACCELERATION}.{{0,40}}?|\bdata )\b(?:in|en|em) (?:units of )?([^\s,;()=]{{1,12}})(?=$|[\s,;(=])", re.I
+    rf"(?:(?:{_ACCELERATION}|\bacc\b).{{0,40}}?|\bdata )\b(?:in|en|em) (?:units of )?"
+    r"([^\s,;()=]{1,12})(?=$|[\s,;(=])",
+    re.I,
 )
 _IN_BRACKETS = re.compile(rf"{_ACCELERATION}[^()\[\]:=]{{0,40}}[(\[]\s*([^()\[\]]{{1,12}}?)\s*[)\]](?!\s*[:=])", re.I)
 _NOT_THE_SAMPLES = re.compile(r"\b(?:peak|max\w*|pga|m[aá]xim\w*|picco)\b", re.I)
@@ -131,7 +133,12 @@ _CLOCK = re.compile(r"^(?:[ymd]+[-/][ymd]+[-/][ymd]+[ t])?h+:m+:s+(?:\.[sf0]+)?$
 _CALLED = re.compile(r"^(?:columns?|fields|colonne|columnas|spalten)\s*[:=]\s*", re.I)
 _INDEX = re.compile(r"^(?:#|no\.?|nr\.?|index|idx|samples?|points?|id|unnamed: 0)?$", re.I)
 _TWO_CELLS = re.compile(r"^(\W{0,10}[^\W\d][^:=,;\t]{0,40})[,;\t]\s{0,10}([^:=,;\t]{1,80}?)[,;\t\s]{0,100}$")
-_CELL = re.compile(r"^([^()\[\]]{1,40}?)\s*(?:[(\[]\s*([^()\[\]]{1,20}?)\s*[)\]])?$")
+_CELL = re.compile(
+    r"^([^()\[\]]{1,40}?(?:\s*[(\[][^()\[\]]{1,12}[)\]](?=\s*[(\[]))?)\s*(?:[(\[]\s*([^()\[\]]{1,20}?)\s*[)\]])?$"
+)
+_TURNED = re.compile(r"[(\[]\s*(\d{3}|[NS]?\s?\d{1,3}\s?[EW]|up|down|[A-Z][A-Za-z-]{0,11})\s*[)\]]?$")
+"""An orientation in brackets behind a name: "H1 (045) [g]", "Ch1 (N)"; a number of fewer digits may count."""
+
 _WORD = re.compile(r"[^\s()\[\]]+(?:[ ]?[(\[][^()\[\]]*[)\]])?")
 _PREFIX = re.compile(
     r"^(?:acc(?:el(?:eration|erazione)?)?|acc.l.ration|acel(?:eraci.n)?|acelera..o|beschleunigung|ivme|"
@@ -169,7 +176,8 @@ class HeadColumn:
     @property
     def orientation(self) -> Orientation:
         """Of a component: what its name says, or the name."""
-        return turned(_PREFIX.sub("", self.name))
+        behind = _TURNED.search(self.name)
+        return next(filter(points, map(turned, behind.groups() if behind else ())), turned(_PREFIX.sub("", self.name)))
 
 
 @dataclass
@@ -333,6 +341,8 @@ def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn
         is_time = number == first and (in_time or (not word and bool(_TIME.match(name))))
         kind, unit = ("", word.lower()) if is_time else unit_of(word)
         kind = "a spectrum" if spectral(name) else kind or _kind_by(name)
+        if word and not kind and not is_time and _TURNED.match(f"({word}") and points(turned(word)):
+            name, word = f"{name} ({word})", ""
         columns.append(HeadColumn(name, kind, unit, is_time, "" if kind or is_time else word))
     if separator is None and columns[-1].kind and not any(one.kind or one.said for one in columns[:-1]):
         # "N-S  E-W  U-D  (gal)": the unit is that of all.

@@ -32,7 +32,7 @@ _ALIKE = {
     **{
         f"{length}{spelt}": f"{length}/s2"
         for length in ("m", "cm", "mm", "nm", "in", "ft")
-        for spelt in ("/s/s", "s-2")
+        for spelt in ("/s/s", "/ss", "s-2")
     },
     "g's": "g",
     **dict.fromkeys(("pctg", "percentg", "percentofg", "g%", "%ofg"), "%g"),

@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from math import inf, isfinite
 
+from pipeline.motions.corner_range import corner_range_of
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL
 from pipeline.records import Chart, MotionSummary
 from pipeline.report.language import _, local
@@ -54,9 +55,26 @@ def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units
         columns=(_("East (x)"), _("North (y)"), up, _("Larger horizontal"), _("Resultant")),
         table=tuple(table),
         others=tuple((_name(key), _write(key, value, _unit(key), units)) for key, value in rest.items()),
+        corner=_corner(motion, units),
         charts=tuple(sorted(mine, key=lambda key: _figure(charts[key]))),
         steps=tuple(clean(s) for s in motion.steps),
     )
+
+
+def _corner(motion: MotionSummary, units: Units) -> str:
+    other = corner_range_of(motion.steps)
+    # Of a floor the peaks are its own.
+    if other is None or motion.floor:
+        return ""
+    return _(
+        "For seismologists: between half and double of the corner of its filter (%(low)s and %(high)s\u00a0Hz) the "
+        "resultant PGV is %(pgv)s and the PGD %(pgd)s. The verdicts are of the corner that was used."
+    ) % {
+        "low": local(f"{other.highpass_hz[0]:.3g}"),
+        "high": local(f"{other.highpass_hz[1]:.3g}"),
+        "pgv": units.pair(*other.pgv, "m/s"),
+        "pgd": units.pair(*other.pgd, "m"),
+    }
 
 
 def _figure(chart: Chart) -> float:

@@ -1,5 +1,6 @@
 """Words about an inspected record, on its page and on the terminal."""
 
+from pipeline.motions.corner_range import corner_range_of
 from pipeline.motions.doubts import doubts, scale_of
 from pipeline.motions.inspection import Inspection
 from pipeline.motions.pulses import WaveletPulse
@@ -122,6 +123,10 @@ def summary_lines(one: Inspection, units: Units) -> list[str]:
             before = f"{measured(was[key], unit, units)} -> " if one.filtered else ""
             parts.append(f"{axis} {before}{measured(now[key], unit, units)}")
         lines.append(f"  {title.ljust(10)}{'; '.join(parts)} {units.symbol(unit)}")
+    if (other := corner_range_of(one.motion.steps)) is not None:
+        low, high = other.highpass_hz
+        peaks = f"PGV {units.pair(*other.pgv, 'm/s')}, PGD {units.pair(*other.pgd, 'm')}"
+        lines.append(f"  at        {low:.3g} to {high:.3g} Hz, half the corner to double: {peaks} (resultants)")
     arias = [
         f"{axis} " + (f"{number(was[f'arias_{axis}'])} -> " if one.filtered else "") + number(now[f"arias_{axis}"])
         for axis in "xyz"

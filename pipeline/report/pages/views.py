@@ -433,6 +433,7 @@ class MotionView:
 
     table  : rows of PGA, PGV, PGD, Arias intensity; one text a column (see ``columns``), "–" where not computed
     others : measures that fit in no column
+    corner : what of it hangs on the corner of its filter, "" where it was not filtered here
     charts : keys of the charts that were drawn for this motion, in the order of the paper's figures
     """
 
@@ -447,6 +448,7 @@ class MotionView:
     columns: tuple[str, ...]
     table: tuple[tuple[str, tuple[str, ...]], ...]
     others: tuple[tuple[str, str], ...]
+    corner: str
     charts: tuple[str, ...]
     steps: tuple[str, ...]
 
