@@ -20,6 +20,7 @@ from pipeline.collection.guessing.columns import (
     length_beside,
     material_and_technique,
     prose_of_dimensions,
+    sentences_of_dimensions,
     usual_place,
 )
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
@@ -59,6 +60,8 @@ MOST_REPEATED = 0.1
 
 MOST_STORES = 200
 """Places that are listed as stores at most."""
+
+_SIDES = ("height_m", "width_m", "depth_m", "diameter_m")
 
 _NAMING = ("title", "object_name", "classification", "medium")
 
@@ -253,6 +256,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     document["columns"] = fields
     _cases_in_places(fields, [column for column in (found.get("gallery"), usual) if column is not None], told)
     texts = texts_among(columns, used)
+    prose: list[Column] = []
     wanted = told.choices.get("dimensions")
     if wanted is not None:
         texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
@@ -261,13 +265,23 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         may = [column for column in columns if id(column) not in apart]
         behind = captions_of_dimensions(may) or prose_of_dimensions(columns, used)
         if behind is not None:
-            texts = [behind]
+            texts, prose = [behind], [behind] * behind.prose
             told.doubts.append(
                 f"no column is for sizes: those in {'the sentences of ' * behind.prose}{behind.name!r} are read, look "
                 "at each; --choose dimensions=- leaves them"
             )
+    if wanted is None:
+        beside = sentences_of_dimensions(columns, [*texts, *(found[one] for one in _SIDES if one in found)], used)
+        if beside is not None:
+            texts, prose = [*texts, beside], [beside]
+            told.doubts.append(
+                f"the sizes of some objects stand in sentences of {beside.name!r} alone and are read there, look at "
+                "each; --choose dimensions=COLUMN leaves them"
+            )
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
+        if prose:
+            document["dimensions"]["prose"] = [column.name for column in prose]
         units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
         language, said = language_of(texts)
         if language:

@@ -89,6 +89,7 @@ def fill(
     cells: Cells,
     mapping: Texts,
     texts: Sequence[str],
+    names: Sequence[str],
     decimal: str,
     *,
     texts_hold: bool = False,
@@ -105,27 +106,35 @@ def fill(
         What the mapping says of its texts.
     texts : sequence of str
         Of the mapping's columns, in its order; the first that says something counts.
+    names : sequence of str
+        The columns that they are of.
     decimal : {".", ","}
         The source's decimal mark.
     texts_hold : bool
         Whether a text holds where a column says something else; else the column does.
     """
-    texts = [plain_text(text) for text in texts]
+    prose = [name in mapping.prose for name in names]
+    sized = any(values.get(field) is not None for field in _SIDES)
+    told = sized or any(text.strip() for text, sentences in zip(texts, prose, strict=True) if not sentences)
+    texts = ["" if told and sentences else plain_text(text) for text, sentences in zip(texts, prose, strict=True)]
     # Lines are how such texts are written, and no fault of theirs.
     lines = ["; ".join(filter(None, (line.strip() for line in text.splitlines()))) for text in texts]
-    values["dimensions"] = cells.text("dimensions", _joined(mapping.columns), lines, limit=TEXT_LIMIT)
+    values["dimensions"] = cells.text("dimensions", _joined(tuple(names)), lines, limit=TEXT_LIMIT)
     given = {field: values[field] for field in FIELDS_FILLED if values.get(field) is not None}
-    for text in texts:
+    for text, sentences in zip(texts, prose, strict=True):
         if text.strip():
-            _fill_from(
-                values,
-                given,
-                cells,
-                parse(text, default_unit=mapping.unit, decimal=decimal, language=mapping.language, order=mapping.order),
-                mapping,
-                texts_hold,
+            read = parse(
+                text,
+                default_unit=mapping.unit,
+                decimal=decimal,
+                language=mapping.language,
+                order=mapping.order,
+                prose=sentences,
             )
+            _fill_from(values, given, cells, read, mapping, texts_hold)
 
+
+_SIDES = ("height_m", "width_m", "depth_m")
 
 FIELDS_FILLED = tuple(dict.fromkeys(field for fields in FIELDS.values() for field in fields))
 

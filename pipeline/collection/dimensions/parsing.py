@@ -43,7 +43,13 @@ _DASHED_SIDES = frozenset("hwldbt")
 
 
 def parse(
-    text: str, *, default_unit: str | None = None, decimal: str = ".", language: str = "", order: Sequence[str] = ()
+    text: str,
+    *,
+    default_unit: str | None = None,
+    decimal: str = ".",
+    language: str = "",
+    order: Sequence[str] = (),
+    prose: bool = False,
 ) -> Dimensions:
     """Read the text of a dimensions field.
 
@@ -61,6 +67,9 @@ def parse(
     order : sequence of str
         The dimensions that numbers without any have by their order, where the source writes another than height x
         width x depth.
+    prose : bool
+        Whether the text is of sentences, where a number measures only what is named, or by a unit of its own: years
+        and counts stand there too.
 
     Returns
     -------
@@ -91,7 +100,7 @@ def parse(
     decimal = _mark_of(head) or decimal
     told: list[DimensionNote] = []
     tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
-    reader = Reader(head, tokens, default is not None)
+    reader = Reader(head, tokens, default is not None and not prose)
     reader.notes += told
     reader.read()
     notes = reader.notes
@@ -107,6 +116,8 @@ def parse(
             continue
         _share_units(group, notes)
         for q in group.quantities:
+            if q.unit is None and prose and not q.dimension:
+                continue
             if q.unit is None and default is not None:
                 q.unit = default
                 notes.append(
