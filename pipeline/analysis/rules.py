@@ -242,9 +242,10 @@ def _is_full(text: str, title: RuleMatch) -> bool:
     if title.rule.object_class in _BODIES and len(text.split()) <= _WORDS_OF_NAME and _OF_STUFF.match(fold(text)):
         return True
     word = title.word.removeprefix("*")
-    if not IDEOGRAPH.match(word) or not text.endswith(word):
+    folded = fold(text)
+    if not IDEOGRAPH.match(word) or not folded.endswith(word):
         return False
-    ornament = title.rule.object_class not in _FIGURES and _IN_FULL.fullmatch(text.removesuffix(word))
+    ornament = title.rule.object_class not in _FIGURES and _IN_FULL.fullmatch(folded.removesuffix(word))
     return bool(ornament or _MADE_OF.match(text))
 
 

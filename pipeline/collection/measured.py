@@ -89,9 +89,9 @@ def fill(
     cells: Cells,
     mapping: Texts,
     texts: Sequence[str],
-    names: Sequence[str],
     decimal: str,
     *,
+    names: Sequence[str] = (),
     texts_hold: bool = False,
 ) -> None:
     """Fill what no column gives from the texts of a row; where both speak, say whether they agree.
@@ -106,13 +106,14 @@ def fill(
         What the mapping says of its texts.
     texts : sequence of str
         Of the mapping's columns, in its order; the first that says something counts.
-    names : sequence of str
-        The columns that they are of.
     decimal : {".", ","}
         The source's decimal mark.
+    names : sequence of str
+        The columns that the texts are of, where the source lacks some of the mapping's.
     texts_hold : bool
         Whether a text holds where a column says something else; else the column does.
     """
+    names = names or mapping.columns
     prose = [name in mapping.prose for name in names]
     sized = any(values.get(field) is not None for field in _SIDES)
     told = sized or any(text.strip() for text, sentences in zip(texts, prose, strict=True) if not sentences)

@@ -18,6 +18,7 @@ from pipeline.collection.sources.heads import BETWEEN
 from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.errors import InputError
 from pipeline.tables import table
+from pipeline.tables.ideographs import shortened_signs
 from pipeline.tables.rows import Entries, checked
 
 TEXTS = "dimensions"
@@ -216,7 +217,8 @@ def plain(name: str) -> str:
     )
     # NFKD takes the voicing marks off Japanese signs; they are put together again.
     # In capitals nobody can tell the two i of Turkish apart.
-    words = _OTHER.sub(" ", normalize("NFC", bare).casefold().replace("ı", "i")).split()
+    bare = shortened_signs(normalize("NFC", bare))
+    words = _OTHER.sub(" ", bare.casefold().replace("ı", "i")).split()
     kept = ["no" if word in _NUMBER_WORDS else word for word in words if word not in _STOP]
     return " ".join(kept or words)
 
