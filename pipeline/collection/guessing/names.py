@@ -54,7 +54,7 @@ _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
 _GLUED = re.compile(r"(\w{3,}?)(?:number|nummer|num|nr|no)")
 """A name of one word that ends with a word for number: "accessionnum"."""
-_GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Obj|Acc|Ide|Dim|Mea|Reg|Tax|Cla|Spe|Sta|Dar)(?=[A-Z])")
+_GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Col|Obj|Acc|Ide|Dim|Mea|Reg|Tax|Cla|Spe|Sta|Dar)(?=[A-Z])")
 """Before a name: of which group of fields it is, in systems that write it so (EMu, MuseumPlus): "TitObjectNumber"."""
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _TYPED = re.compile(r"(?<=[a-z])(?:Txt|Clb|Vrt|Num|Voc|Lnu)$")
