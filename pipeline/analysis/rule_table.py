@@ -26,8 +26,8 @@ from pipeline.analysis.shapes import SHAPES
 from pipeline.errors import InputError
 from pipeline.records import Item
 from pipeline.tables import Row, TableError, read_table, table
-from pipeline.tables.ideographs import shortened_signs
 from pipeline.tables.assumed import AssumedValues, assumed
+from pipeline.tables.ideographs import shortened_signs
 from pipeline.tables.rows import Entries, checked, once
 
 _IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")

@@ -407,9 +407,7 @@ def prose_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> Co
     return _telling_most(able, lambda column: column.told)
 
 
-def sentences_of_dimensions(
-    columns: Sequence[Column], told: Sequence[Column], used: Iterable[Column]
-) -> Column | None:
+def sentences_of_dimensions(columns: Sequence[Column], told: Sequence[Column], used: Iterable[Column]) -> Column | None:
     """Return the column whose sentences tell the sizes of objects of which the columns for sizes tell none.
 
     Parameters

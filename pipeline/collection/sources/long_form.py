@@ -140,7 +140,11 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
 def _own_part(part: str, called: str) -> str:
     """Return "" for a part that is the object itself, for the object is called so: the microscope of a microscope."""
     words = [word.casefold() for word in _WORDS.findall(part)]
-    return "" if words and words == [w.casefold() for w in _WORDS.findall(called)][: len(words)] else _NUMBERED.sub("", part)
+    return (
+        ""
+        if words and words == [w.casefold() for w in _WORDS.findall(called)][: len(words)]
+        else _NUMBERED.sub("", part)
+    )
 
 
 def _apart(row: Row, places: tuple[int | None, ...], separator: str) -> Iterator[_LongCell]:
