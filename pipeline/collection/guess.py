@@ -51,6 +51,7 @@ from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.places import parted
 from pipeline.collection.record import units_of
 from pipeline.collection.sources.address import expand_secrets
+from pipeline.collection.sources.measurements import IN_WORDS
 from pipeline.collection.sources.registry import is_address
 from pipeline.collection.sources.tables import as_database
 
@@ -201,7 +202,9 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         about = in_place_of_title(able, found)
         if about is not None:
             found["title"] = about
-            told.doubts.append(f"no column is a title: the first sentence of {about.name!r} is; --choose title=- leaves it")
+            told.doubts.append(
+                f"no column is a title: the first sentence of {about.name!r} is; --choose title=- leaves that"
+            )
     if naming is not None:
         found["object_name"] = naming
         if about is not None:
@@ -295,7 +298,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
             )
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
-        prose += [column for column in texts if column.prose and column not in prose]
+        prose += [one for one in texts if one.prose and one not in prose and IN_WORDS not in one.name]
         if prose:
             document["dimensions"]["prose"] = [column.name for column in prose]
         units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
@@ -303,7 +306,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         if language:
             document["dimensions"]["language"] = language
             told.doubts.append(said)
-        unit, said = (units.pop(), "") if len(units) == 1 else unit_of_texts(texts, language)
+        unit, said = (units.pop(), "") if len(units) == 1 else unit_of_texts(texts, language, prose)
         if unit:
             document["dimensions"]["unit"] = unit
         told.doubts += [said] * bool(said)

@@ -39,6 +39,8 @@ _LEGEND = re.compile(
 
 _DASHED = re.compile(r"(?<![^\W_])([^\W\d_]{1,2})-(?=\d)")
 """A label that a dash parts from its number: H-7 W-24 L-68 cm."""
+_SENTENCE_END = re.compile(r"(?<=\d)\.(?=\s+[^\W\d_])")
+"""A full stop behind a number: what a sentence ends with is no side of what the next one names, as in 1850. H 90."""
 _DASHED_SIDES = frozenset("hwldbt")
 
 
@@ -97,6 +99,8 @@ def parse(
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
     head = _undashed(_LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, text[:LONGEST])))
+    if prose:
+        head = _SENTENCE_END.sub(";", head)
     decimal = _mark_of(head) or decimal
     told: list[DimensionNote] = []
     tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
