@@ -123,7 +123,7 @@ _SCULPTURES = frozenset(
     }
 )
 """Object names, folded, of which a title may name a kind: a sculpture that is called mask, bust or relief."""
-_OF_TECHNIQUE = re.compile(r"\b(?:carvings?|schnitzereien?|houtsnijwerk|talla|sculpte)\b")
+_OF_TECHNIQUE = re.compile(r"\b(?:carvings?|schnitzereien?|houtsnijwerk|talla|sculpte|雕刻)\b")
 """What a museum may class things by that says only how they are made: bowls and baskets among its carvings."""
 _CARVED = ("bust", "relief")
 """Classes of such kinds; a boot or a crown of marble stands as other sculpture does, and a chandelier hangs."""
