@@ -130,6 +130,22 @@ def test_rows_of_parts_are_gathered_and_the_object_itself_counts(tmp_path: Path)
     assert any("each part of an object has a row of its own" in said for said in found.sure)
 
 
+def test_sides_of_parts_in_two_units_are_one(tmp_path: Path) -> None:
+    _, items = written(
+        tmp_path,
+        "HeightCM,HeightIN,WidthCM,WidthIN,DepthCM,DepthIN,Element,objectnumber",
+        "25.4,10,50.8,20,0,0,overall,X.1",
+        "50.8,20,76.2,30,5.08,2,frame,X.1",
+        "127,50,101.6,40,0,0,sheet,X.2",
+        "152.4,60,127,50,2.54,1,frame,X.2",
+        "30.48,12,20.32,8,10.16,4,overall,X.3",
+    )
+    sides = [(item.height_m, item.width_m, item.depth_m) for item in items.values()]
+    assert sides == [
+        pytest.approx(one) for one in ((0.508, 0.762, 0.0508), (1.524, 1.27, 0.0254), (0.3048, 0.2032, 0.1016))
+    ]
+
+
 def test_rows_of_several_things_with_one_number_are_no_parts(tmp_path: Path) -> None:
     lines = [line.replace(",Part,", ",Title,") for line in PARTS]
     found, items = written(tmp_path, *lines)

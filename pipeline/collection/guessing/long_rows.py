@@ -141,7 +141,7 @@ def _of_parts(columns: Sequence[Column]) -> LongForm | None:
         sides=tuple(
             LongSide(column=one.name, kind=_KIND.get(kind, kind), unit=unit_in(one.name)[1] or "")
             for kind, those in sides
-            for one in those[:1]
+            for one in those
         ),
     )
 
