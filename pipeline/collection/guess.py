@@ -34,7 +34,6 @@ from pipeline.collection.guessing.fields import (
 from pipeline.collection.guessing.headings import place_by_heading
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named, unit_in
 from pipeline.collection.guessing.orders import language_of, order_of, unit_of_texts
-from pipeline.collection.guessing.presets import MOST_STORES, of_preset, said_of_stores
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -44,6 +43,7 @@ from pipeline.collection.guessing.source import (
     source_of,
     workbook,
 )
+from pipeline.collection.guessing.taken import MOST_STORES, of_preset, said_of_stores
 from pipeline.collection.guessing.what import describing, in_place_of_title, named_by
 from pipeline.collection.guessing.within import labels_within, parting, place_among
 from pipeline.collection.mapping import MAPPABLE, preset_names
