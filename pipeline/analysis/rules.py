@@ -145,6 +145,19 @@ _KINDS_ONLY = frozenset(
         *("ceramica", "keramiek", "ceramika", "keramika", "陶磁", "furniture", "mobel", "mobilier", "mobili"),
         *("mueble", "muebles", "meubel", "meubels", "mebel", "meble", "nabytek", "mobiliario"),
         *("cast", "casts", "plaster cast", "plaster casts", "abguss", "gipsabguss", "moulage", "moulage en platre"),
+        *(
+            "textile",
+            "textiles",
+            "textil",
+            "textilien",
+            "textilies",
+            "tessile",
+            "tessili",
+            "tessuti",
+            "textiel",
+            "tekstil",
+        ),
+        *("tekstylia", "carving", "carvings", "woodwork", "woodcarving"),
         *("calco", "calco in gesso", "vaciado", "vaciado en yeso", "gipsafgietsel", "odlew gipsowy", "sadrovy odlitek"),
     }
 )
