@@ -406,15 +406,8 @@ class RowReader:
     def _fill(self, values: dict[str, Any], cells: Cells, texts: Texts, found: list[str]) -> None:
         before, provenance = dict(values), list(cells.provenance)
         try:
-            fill(
-                values,
-                cells,
-                texts,
-                found,
-                self._decimal,
-                names=self._named,
-                texts_hold=self._mapping.holds.texts == "texts",
-            )
+            held = self._mapping.holds.texts == "texts"
+            fill(values, cells, texts, found, self._decimal, names=self._named, texts_hold=held)
         except KourosError:
             raise
         except Exception as problem:  # noqa: BLE001 - whatever it is, it is this text's, and told
