@@ -27,6 +27,7 @@ from pipeline.errors import InputError
 from pipeline.records import Item
 from pipeline.tables import Row, TableError, read_table, table
 from pipeline.tables.assumed import AssumedValues, assumed
+from pipeline.tables.ideographs import shortened_signs
 from pipeline.tables.rows import Entries, checked, once
 
 _IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")
@@ -66,6 +67,7 @@ def fold(text: str) -> str:
     if not text.isascii():
         # In capitals nobody can tell the two i of Turkish apart.
         text = "".join(c for c in normalize("NFKD", text) if not combining(c)).replace("ı", "i")
+        text = shortened_signs(text)
     return text.casefold()
 
 

@@ -123,7 +123,7 @@ _SCULPTURES = frozenset(
     }
 )
 """Object names, folded, of which a title may name a kind: a sculpture that is called mask, bust or relief."""
-_OF_TECHNIQUE = re.compile(r"\b(?:carvings?|schnitzereien?|houtsnijwerk|talla|sculpte)\b")
+_OF_TECHNIQUE = re.compile(r"\b(?:carvings?|schnitzereien?|houtsnijwerk|talla|sculpte|雕刻)\b")
 """What a museum may class things by that says only how they are made: bowls and baskets among its carvings."""
 _CARVED = ("bust", "relief")
 """Classes of such kinds; a boot or a crown of marble stands as other sculpture does, and a chandelier hangs."""
@@ -145,6 +145,19 @@ _KINDS_ONLY = frozenset(
         *("ceramica", "keramiek", "ceramika", "keramika", "陶磁", "furniture", "mobel", "mobilier", "mobili"),
         *("mueble", "muebles", "meubel", "meubels", "mebel", "meble", "nabytek", "mobiliario"),
         *("cast", "casts", "plaster cast", "plaster casts", "abguss", "gipsabguss", "moulage", "moulage en platre"),
+        *(
+            "textile",
+            "textiles",
+            "textil",
+            "textilien",
+            "textilies",
+            "tessile",
+            "tessili",
+            "tessuti",
+            "textiel",
+            "tekstil",
+        ),
+        *("tekstylia", "carving", "carvings", "woodwork", "woodcarving"),
         *("calco", "calco in gesso", "vaciado", "vaciado en yeso", "gipsafgietsel", "odlew gipsowy", "sadrovy odlitek"),
     }
 )
@@ -242,9 +255,10 @@ def _is_full(text: str, title: RuleMatch) -> bool:
     if title.rule.object_class in _BODIES and len(text.split()) <= _WORDS_OF_NAME and _OF_STUFF.match(fold(text)):
         return True
     word = title.word.removeprefix("*")
-    if not IDEOGRAPH.match(word) or not text.endswith(word):
+    folded = fold(text)
+    if not IDEOGRAPH.match(word) or not folded.endswith(word):
         return False
-    ornament = title.rule.object_class not in _FIGURES and _IN_FULL.fullmatch(text.removesuffix(word))
+    ornament = title.rule.object_class not in _FIGURES and _IN_FULL.fullmatch(folded.removesuffix(word))
     return bool(ornament or _MADE_OF.match(text))
 
 

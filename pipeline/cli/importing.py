@@ -340,6 +340,8 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     if c.added < c.after:
         listed("new", list(done.changes.added))
     listed("gone", list(done.changes.removed))
+    said = "the same name, place and sizes; what was decided of the old number does not follow it"
+    listed("renumbered", [f"{new} is likely what was {old}: {said}" for old, new in done.changes.renumbered])
     _changed(done.changes)
     click.echo(f"inventory: {counted(c.after, 'object')} ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
     doubtful = sum(1 for item in reading.items if item.problems)

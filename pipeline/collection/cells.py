@@ -28,6 +28,7 @@ _INFINITE = re.compile(r"[+-]?inf(inity)?", re.IGNORECASE)
 _LONGEST_NUMBER = 40
 _LONGEST_WRITTEN = 200
 _LONGEST_OPENING = 160
+_NEXT_LABEL = r"\s[^\W\d_]{4,24}:\s"
 _SENTENCE = re.compile(r"(?<=\w{3})[.!?]\s|[;。；\n\r]")
 """Where the first sentence of a text ends; "c. 1900" and "St. Anne" go on."""
 _MOST_POINTS = 1000
@@ -159,7 +160,7 @@ class Cells:
         str
             "" where nothing is recorded.
         """
-        read = map(words_of, texts)
+        read = (_behind(words_of(text), column.behind) for text in texts)
         parts = [self._clean(name, column, _opening(text) if column.opening else text) for text in read]
         if column.first:
             parts = [next((part for part in parts if not _missing(part, column)), "")]
@@ -412,6 +413,15 @@ def _pairs(text: str, decimal: str) -> list[tuple[float, float]] | None:
     if not 0 < len(found) <= _MOST_POINTS or any(len(point) != 2 for point in found):
         return None
     return [(x, y) for x, y in found]
+
+
+def _behind(text: str, labels: Sequence[str]) -> str:
+    """Return what stands in a text behind the first of some labels that is there; the text where none is."""
+    for label in labels:
+        found = re.search(rf"(?<!\w){re.escape(label)}\s*:\s*(.*?)(?={_NEXT_LABEL}|\Z)", text, re.DOTALL)
+        if found is not None and found[1].strip():
+            return found[1]
+    return text
 
 
 def _opening(text: str) -> str:

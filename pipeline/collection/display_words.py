@@ -10,12 +10,13 @@ from typing import Literal
 from unicodedata import normalize
 
 from pipeline.tables import table
+from pipeline.tables.ideographs import shortened_signs
 from pipeline.tables.rows import Entries, checked
 
 _SEGMENTS = re.compile(r"[,;>/|:()\[\]\u2013\u2014]|\s-\s")
 _BETWEEN = re.compile(r"[\s_.\-\u2010\u2011]+")
 _CODE = re.compile(r"(?:no|nr|n°|nº)?[\w°º]{0,2}\d*[\w]?|\d[\w]*", re.IGNORECASE)
-_COMPOUND = re.compile(r"\w{3,}(?:depot|magazin)s?")
+_COMPOUND = re.compile(r"\w{3,}(?:depot|magazin|magasin|varasto|förråd)s?")
 _MOST_BESIDE = 3
 _MOST_FLAGS, _LONGEST_FLAG = 40, 80
 _CJK = re.compile("[\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7af]")
@@ -37,7 +38,7 @@ def _meant() -> Mapping[str, frozenset[str]]:
 
 
 def _folded(text: str) -> str:
-    return _BETWEEN.sub(" ", normalize("NFKC", text).casefold()).strip()
+    return _BETWEEN.sub(" ", shortened_signs(normalize("NFKC", text)).casefold()).strip()
 
 
 def flag_of(text: str, *, display: bool = False) -> bool | None:
@@ -62,6 +63,8 @@ def flag_of(text: str, *, display: bool = False) -> bool | None:
         return None
     if folded in meant["shown"]:
         return True
+    if _CJK.search(folded) and not says_away(text):
+        return True if any(word in folded for word in meant["shown"] if _CJK.search(word)) else None
     return False if says_away(text) else None
 
 

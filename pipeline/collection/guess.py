@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import tomlkit
-from tomlkit.items import Table
 
 from pipeline.collection.display_words import flag_of, says_away
 from pipeline.collection.errors import CollectionError
@@ -16,10 +15,10 @@ from pipeline.collection.guessing.columns import (
     Column,
     candidates,
     captions_of_dimensions,
-    joined,
     length_beside,
     material_and_technique,
     prose_of_dimensions,
+    sentences_of_dimensions,
     usual_place,
 )
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
@@ -44,21 +43,22 @@ from pipeline.collection.guessing.source import (
     source_of,
     workbook,
 )
-from pipeline.collection.guessing.what import describing, named_by
-from pipeline.collection.mapping import MAPPABLE, PRESETS, preset_names
+from pipeline.collection.guessing.taken import MOST_STORES, of_preset, said_of_stores
+from pipeline.collection.guessing.what import describing, in_place_of_title, named_by
+from pipeline.collection.guessing.within import labels_within, parting, place_among
+from pipeline.collection.mapping import MAPPABLE, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.places import parted
 from pipeline.collection.record import units_of
 from pipeline.collection.sources.address import expand_secrets
+from pipeline.collection.sources.measurements import IN_WORDS
 from pipeline.collection.sources.registry import is_address
 from pipeline.collection.sources.tables import as_database
-from pipeline.quantities import counted
 
 MOST_REPEATED = 0.1
 """Share of object numbers that may be repeated or missing before another column of numbers is looked for."""
 
-MOST_STORES = 200
-"""Places that are listed as stores at most."""
+_SIDES = ("height_m", "width_m", "depth_m", "diameter_m")
 
 _NAMING = ("title", "object_name", "classification", "medium")
 
@@ -125,7 +125,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         name = expand_secrets(str(where)).shown
         preset, source, columns = database(str(where), name, table, told)
         if preset is not None:
-            return _of_preset(preset, columns, told)
+            return _preset(preset, columns, told)
     else:
         path = Path(where)
         name = path.name
@@ -136,7 +136,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
                 preset, read, columns = database(url, name, table, told)
             source |= {key: value for key, value in read.items() if key != "format"}
             if preset is not None:
-                return _of_preset(preset, columns, told, source)
+                return _preset(preset, columns, told, source)
         elif source["format"] == "xlsx":
             source, columns = workbook(path, table, told)
         elif table is not None:
@@ -147,7 +147,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
             columns = columns_in(path, source)
             if preset is not None:
                 told.sure.append(f"{name} is of the format {kind}, whose preset {preset!r} is taken")
-                return _of_preset(preset, columns, told)
+                return _preset(preset, columns, told)
         else:
             columns = columns_in(path, source)
     columns = objects_of(name, source, columns, told)
@@ -156,6 +156,11 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         source["decimal"] = decimal
         told.sure.append("decimal comma, as most numbers have it")
     return _written(name, source, columns, told)
+
+
+def _preset(name: str, columns: Sequence[Column], told: GuessNotes, source: Mapping[str, Any] | None = None) -> Guess:
+    text, proposal = of_preset(name, columns, told, source)
+    return Guess(text, proposal, tuple(told.doubts), (), tuple(told.sure))
 
 
 def _check_choices(choices: Mapping[str, str]) -> None:
@@ -193,6 +198,13 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     naming = named_by(able, found, told.choices)
     described = naming is not None and naming is not found.get("title")
     about = None if naming is None or described or "title" in told.choices else describing(able, naming)
+    if about is None and not described and "title" not in told.choices:
+        about = in_place_of_title(able, found)
+        if about is not None:
+            found["title"] = about
+            told.doubts.append(
+                f"no column is a title: the first sentence of {about.name!r} is; --choose title=- leaves that"
+            )
     if naming is not None:
         found["object_name"] = naming
         if about is not None:
@@ -218,12 +230,19 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     document["museum"] = {"name": "Our museum"}
     if not {"gallery", "on_display"} & told.choices.keys() and "gallery" not in found:
         _place_of_shown(found, told)
+    if "gallery" not in found and "gallery" not in told.choices:
+        placed = place_among(columns, found.values())
+        if placed is not None:
+            found["gallery"] = placed
+            told.doubts.append(f"column {placed.name!r} is taken to tell where objects are, by what it holds")
     _words_of_display(found, told)
     if "on_display" not in found and "on_display" not in told.choices:
         flag = flag_among(columns, found.values())
         if flag is not None:
             found["on_display"] = flag
             told.doubts.append(f"column {flag.name!r} is taken to say what is on display, by its words")
+        else:
+            told.questions += filter(None, [parting(columns, found.values(), found.get("gallery"))])
     if "image" not in told.choices:
         # A column called "image" may hold anything: what is in it says whether it names photographs.
         if "image" in found and found["image"].pictured <= 0.5:
@@ -248,11 +267,14 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     saying, field = (about, "title") if about is not None else (naming if described else None, "object_name")
     if saying is not None and field in fields:
         fields[field]["opening"] = True
+        if labels := labels_within(saying):
+            fields[field]["behind"] = labels
         # Sizes may stand in its other sentences.
         used = [column for column in used if column is not saying]
     document["columns"] = fields
     _cases_in_places(fields, [column for column in (found.get("gallery"), usual) if column is not None], told)
     texts = texts_among(columns, used)
+    prose: list[Column] = []
     wanted = told.choices.get("dimensions")
     if wanted is not None:
         texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
@@ -261,19 +283,30 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         may = [column for column in columns if id(column) not in apart]
         behind = captions_of_dimensions(may) or prose_of_dimensions(columns, used)
         if behind is not None:
-            texts = [behind]
+            texts, prose = [behind], [behind] * behind.prose
             told.doubts.append(
                 f"no column is for sizes: those in {'the sentences of ' * behind.prose}{behind.name!r} are read, look "
                 "at each; --choose dimensions=- leaves them"
             )
+    if wanted is None:
+        beside = sentences_of_dimensions(columns, [*texts, *(found[one] for one in _SIDES if one in found)], used)
+        if beside is not None:
+            texts, prose = [*texts, beside], [beside]
+            told.doubts.append(
+                f"the sizes of some objects stand in sentences of {beside.name!r} alone and are read there, look at "
+                "each; --choose dimensions=COLUMN leaves them"
+            )
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
+        prose += [one for one in texts if one.prose and one not in prose and IN_WORDS not in one.name]
+        if prose:
+            document["dimensions"]["prose"] = [column.name for column in prose]
         units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
         language, said = language_of(texts)
         if language:
             document["dimensions"]["language"] = language
             told.doubts.append(said)
-        unit, said = (units.pop(), "") if len(units) == 1 else unit_of_texts(texts, language)
+        unit, said = (units.pop(), "") if len(units) == 1 else unit_of_texts(texts, language, prose)
         if unit:
             document["dimensions"]["unit"] = unit
         told.doubts += [said] * bool(said)
@@ -296,7 +329,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     stores = list(dict.fromkeys(filter(says_away, (place for column in places for place in column.distinct))))
     if stores:
         document["display"] = {"not_on_display": stores[:MOST_STORES]}
-        told.doubts.append(_said_of(stores))
+        told.doubts.append(said_of_stores(stores))
     if "on_display" not in fields and not stores:
         told.doubts.append(
             "nothing tells what is on display: all objects that have a place are; --choose on_display=COLUMN names one "
@@ -458,42 +491,3 @@ def _unique(name: str, columns: Sequence[Column], found: Mapping[str, Column]) -
         f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "
         "object_number=COLUMN; or where the names of the columns stand: --choose header_row=NUMBER"
     )
-
-
-def _of_preset(
-    name: str, columns: Sequence[Column], told: GuessNotes, source: Mapping[str, Any] | None = None
-) -> Guess:
-    """Return a preset, in the ways of another source perhaps, and what the source leaves empty of what it reads."""
-    document = tomlkit.parse((PRESETS / f"{name}.toml").read_text(encoding="utf-8"))
-    cast(Table, document["source"]).update(source or {})
-    text = tomlkit.dumps(document)
-    proposal = Proposal.model_validate(document.unwrap())
-    filled = {column.name for column in columns if column.filled}
-
-    def tells(*fields: str) -> bool:
-        read = [proposal.columns[one] for one in fields if one in proposal.columns]
-        return any(one.constant is not None or filled & set(one.sources) for one in read)
-
-    if not tells("object_number"):
-        told.doubts.append("no record tells object numbers: export them")
-    if not tells("gallery"):
-        told.doubts.append(
-            "no record tells where an object is: export the current location, or put a constant in [columns.gallery]"
-        )
-    texts = () if proposal.dimensions is None else proposal.dimensions.columns
-    if not tells("height_m", "width_m", "depth_m", "diameter_m") and not filled & set(texts):
-        told.doubts.append("no record tells sizes: export the dimensions too")
-    places = proposal.columns["gallery"].sources
-    stores = list(filter(says_away, joined(columns, places, proposal.columns["gallery"].separator)))
-    if stores:
-        document["display"] = {"not_on_display": stores[:MOST_STORES]}
-        text = tomlkit.dumps(document)
-        told.doubts.append(_said_of(stores))
-    elif not tells("on_display"):
-        told.doubts.append("nothing tells what is on display: name stores in the mapping, [display] not_on_display")
-    return Guess(text, Proposal.model_validate(tomlkit.parse(text).unwrap()), tuple(told.doubts), (), tuple(told.sure))
-
-
-def _said_of(stores: Sequence[str]) -> str:
-    shown = ", ".join(map(repr, stores[:5])) + (", ..." if len(stores) > 5 else "")
-    return f"{counted(len(stores), 'place')} counted as stores, by their names: {shown}"

@@ -150,6 +150,11 @@ class ColumnMap(MappingPart):
     opening: bool = Field(
         default=False, description="Of a description only its first sentence counts, which says what a thing is."
     )
+    behind: tuple[Name, ...] = Field(
+        default=(),
+        description='Labels that its texts may have, as "Titel: Vase Beschreibung: Vase aus Porzellan" does: what '
+        "stands behind the first of these that is there counts.",
+    )
     optional: bool = Field(default=False, description="The file may lack this column.")
 
     @property

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from pipeline.collection.dimensions import languages
 from pipeline.collection.image_names import pattern_keys
@@ -46,7 +46,19 @@ class Texts(MappingPart):
         '["length", "width", "height"].',
     )
     framed: bool = Field(default=True, description="Whether works in frames hang in them: then the frame counts.")
+    prose: tuple[Name, ...] = Field(
+        default=(),
+        description="Those of the columns that hold sentences: read only where the others are empty, and there only "
+        "numbers that name a side or have a unit.",
+    )
     optional: bool = Field(default=False, description="The source may lack these columns.")
+
+    @model_validator(mode="after")
+    def _among(self) -> Self:
+        other = next((name for name in self.prose if name not in self.columns), None)
+        if other is not None:
+            raise InputError(f"prose names {other!r}, which is none of the columns; add it to columns")
+        return self
 
     @field_validator("unit")
     @classmethod

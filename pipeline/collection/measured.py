@@ -91,6 +91,7 @@ def fill(
     texts: Sequence[str],
     decimal: str,
     *,
+    names: Sequence[str] = (),
     texts_hold: bool = False,
 ) -> None:
     """Fill what no column gives from the texts of a row; where both speak, say whether they agree.
@@ -107,25 +108,34 @@ def fill(
         Of the mapping's columns, in its order; the first that says something counts.
     decimal : {".", ","}
         The source's decimal mark.
+    names : sequence of str
+        The columns that the texts are of, where the source lacks some of the mapping's.
     texts_hold : bool
         Whether a text holds where a column says something else; else the column does.
     """
-    texts = [plain_text(text) for text in texts]
+    names = names or mapping.columns
+    prose = [name in mapping.prose for name in names]
+    sized = any(values.get(field) is not None for field in _SIDES)
+    told = sized or any(text.strip() for text, sentences in zip(texts, prose, strict=True) if not sentences)
+    texts = ["" if told and sentences else plain_text(text) for text, sentences in zip(texts, prose, strict=True)]
     # Lines are how such texts are written, and no fault of theirs.
     lines = ["; ".join(filter(None, (line.strip() for line in text.splitlines()))) for text in texts]
-    values["dimensions"] = cells.text("dimensions", _joined(mapping.columns), lines, limit=TEXT_LIMIT)
+    values["dimensions"] = cells.text("dimensions", _joined(tuple(names)), lines, limit=TEXT_LIMIT)
     given = {field: values[field] for field in FIELDS_FILLED if values.get(field) is not None}
-    for text in texts:
+    for text, sentences in zip(texts, prose, strict=True):
         if text.strip():
-            _fill_from(
-                values,
-                given,
-                cells,
-                parse(text, default_unit=mapping.unit, decimal=decimal, language=mapping.language, order=mapping.order),
-                mapping,
-                texts_hold,
+            read = parse(
+                text,
+                default_unit=mapping.unit,
+                decimal=decimal,
+                language=mapping.language,
+                order=mapping.order,
+                prose=sentences,
             )
+            _fill_from(values, given, cells, read, mapping, texts_hold)
 
+
+_SIDES = ("height_m", "width_m", "depth_m")
 
 FIELDS_FILLED = tuple(dict.fromkeys(field for fields in FIELDS.values() for field in fields))
 

@@ -276,6 +276,7 @@ class RowReader:
         self._seen: dict[str, int] = {}
         texts = mapping.dimensions
         self._texts = texts and [names.index(source) for source in texts.columns if source in names]
+        self._named = tuple(source for source in texts.columns if source in names) if texts else ()
         placed = any(field == "gallery" for field, *_ in self._columns)
         beside = {at for _, _, places in self._columns for at in places} | set(self._texts or ())
         self._beside = {at for at in beside - set(self._key) if names[at] != HEADING} if placed else set()
@@ -405,7 +406,8 @@ class RowReader:
     def _fill(self, values: dict[str, Any], cells: Cells, texts: Texts, found: list[str]) -> None:
         before, provenance = dict(values), list(cells.provenance)
         try:
-            fill(values, cells, texts, found, self._decimal, texts_hold=self._mapping.holds.texts == "texts")
+            held = self._mapping.holds.texts == "texts"
+            fill(values, cells, texts, found, self._decimal, names=self._named, texts_hold=held)
         except KourosError:
             raise
         except Exception as problem:  # noqa: BLE001 - whatever it is, it is this text's, and told

@@ -172,6 +172,19 @@ def test_a_difference_names_objects_fields_and_both_values(engine: Engine) -> No
     assert replace_inventory(engine, made(new), shrink_limit=1.0) == would
 
 
+def test_what_is_the_same_but_for_its_number_is_told(engine: Engine) -> None:
+    vase = Item("A 1", "Hall", title="Vase", medium="porcelain", height_m=0.3, width_m=0.12)
+    pair = [Item(number, "Hall", title="Candlestick", height_m=0.24) for number in ("B 1", "B 2")]
+    nameless = Item("C 1", "Hall", height_m=0.5)
+    replace_inventory(engine, made([vase, *pair, nameless]))
+    new = [replace(one, object_number=f"2026.{at}") for at, one in enumerate((vase, *pair, nameless))]
+    would = replace_inventory(engine, made(new), shrink_limit=1.0, dry_run=True)
+    # Of a pair nobody can say which is which, and a size alone is no thing.
+    assert would.renumbered == (("A 1", "2026.0"),)
+    other = [replace(vase, object_number="2026.0", height_m=0.31), *pair, nameless]
+    assert replace_inventory(engine, made(other), shrink_limit=1.0, dry_run=True).renumbered == ()
+
+
 def test_the_same_again_makes_no_version(engine: Engine) -> None:
     replace_inventory(engine, made(numbered(3)))
     assert not replace_inventory(engine, made(numbered(3)))

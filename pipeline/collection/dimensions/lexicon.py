@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from typing import Annotated
 
 from pydantic import Field
@@ -122,6 +122,22 @@ def meanings() -> dict[str, tuple[str, str]]:
     return {
         word.translate(ALIKE): (row.kind, row.meaning) for row in rows if row.kind != _COMPOUND for word in row.words
     }
+
+
+_SHORTENED = 3
+"""Letters from which the beginning of a word stands for it (judgement)."""
+
+
+@lru_cache(maxsize=4096)
+def shortened(word: str) -> tuple[str, str] | None:
+    """Return what a word cut short says, of which all words of dimensions that begin so say one thing: "lev", leveys.
+
+    word : in small letters
+    """
+    if len(word) < _SHORTENED or not word.isalpha():
+        return None
+    told = {said for name, said in meanings().items() if said[0] == "dimension" and name.startswith(word)}
+    return told.pop() if len(told) == 1 else None
 
 
 @cache

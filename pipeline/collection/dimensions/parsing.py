@@ -39,11 +39,19 @@ _LEGEND = re.compile(
 
 _DASHED = re.compile(r"(?<![^\W_])([^\W\d_]{1,2})-(?=\d)")
 """A label that a dash parts from its number: H-7 W-24 L-68 cm."""
+_SENTENCE_END = re.compile(r"(?<=\d)\.(?=\s+[^\W\d_])")
+"""A full stop behind a number: what a sentence ends with is no side of what the next one names, as in 1850. H 90."""
 _DASHED_SIDES = frozenset("hwldbt")
 
 
 def parse(
-    text: str, *, default_unit: str | None = None, decimal: str = ".", language: str = "", order: Sequence[str] = ()
+    text: str,
+    *,
+    default_unit: str | None = None,
+    decimal: str = ".",
+    language: str = "",
+    order: Sequence[str] = (),
+    prose: bool = False,
 ) -> Dimensions:
     """Read the text of a dimensions field.
 
@@ -61,6 +69,9 @@ def parse(
     order : sequence of str
         The dimensions that numbers without any have by their order, where the source writes another than height x
         width x depth.
+    prose : bool
+        Whether the text is of sentences, where a number measures only what is named, or by a unit of its own: years
+        and counts stand there too.
 
     Returns
     -------
@@ -88,10 +99,12 @@ def parse(
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
     head = _undashed(_LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, text[:LONGEST])))
+    if prose:
+        head = _SENTENCE_END.sub(";", head)
     decimal = _mark_of(head) or decimal
     told: list[DimensionNote] = []
     tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
-    reader = Reader(head, tokens, default is not None)
+    reader = Reader(head, tokens, default is not None and not prose)
     reader.notes += told
     reader.read()
     notes = reader.notes
@@ -107,6 +120,8 @@ def parse(
             continue
         _share_units(group, notes)
         for q in group.quantities:
+            if q.unit is None and prose and not q.dimension:
+                continue
             if q.unit is None and default is not None:
                 q.unit = default
                 notes.append(

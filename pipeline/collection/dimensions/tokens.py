@@ -6,7 +6,15 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from pipeline.collection.dimensions.lexicon import ALIKE, LexiconUnit, compounds, label_words, meanings, unit_words
+from pipeline.collection.dimensions.lexicon import (
+    ALIKE,
+    LexiconUnit,
+    compounds,
+    label_words,
+    meanings,
+    shortened,
+    unit_words,
+)
 
 NUMBER, DOTTED, WORD, UNIT, DIMENSION, JOIN, OPEN, CLOSE, BREAK, COMMA, COLON, DASH, DOT, TIME, OTHER, END = range(16)
 
@@ -100,6 +108,8 @@ _IN_INCHES = _HALVED | {"3", "5", "6", "10", "12", "20", "100"}
 """What a fraction of an inch may have there at all: 30/40 is none."""
 _EXTREME = re.compile(r"(\w{1,4})(max|min)")
 """A label and its qualifier in one word: Dmax, Hmin."""
+_CUT = re.compile(r"\.:?\s*\d")
+"""What stands behind a word that is cut short before its number: "lev. 61 cm"."""
 _MIXED = re.compile(rf"(\d[\d,]*)[^\d{_V}]*(?:(\d+)\D+(\d+)|([{_V}]))")
 _MARKS = {
     "(": OPEN, "[": OPEN, "{": OPEN, "（": OPEN, "［": OPEN, ")": CLOSE, "]": CLOSE, "}": CLOSE, "）": CLOSE,
@@ -174,6 +184,8 @@ def tokens_of(text: str, decimal: str) -> list[Token]:
                 out.append(_word(extreme[2], middle, end, known, by_word))
             elif "x" in word and word not in known and _is_legend(word):
                 out += _legend(word, start, known, by_word)
+            elif word not in known and word not in by_word and _CUT.match(text, end) and (said := shortened(word)):
+                out.append(Token(DIMENSION, start, end, word, said))
             else:
                 out.append(_word(word, start, end, known, by_word))
         elif _CLOCK < group < _QUOTE:

@@ -12,6 +12,7 @@ from statistics import median
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.names import (
+    DESCRIPTION,
     LENGTH,
     TEXTS,
     ColumnMeaning,
@@ -40,6 +41,9 @@ _NAMED = ("height", "width", "depth", "diameter", "length")
 
 FEWEST = 10
 """Cells that must hold the same before a column is taken to tell nothing."""
+
+FEWEST_TOLD = 3
+"""Objects whose sizes sentences alone tell, from which these are read (judgement)."""
 
 _LONGEST = 40
 """Characters up to which a text is rather the number of an object than a sentence (judgement)."""
@@ -401,6 +405,47 @@ def prose_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> Co
     taken = {id(column) for column in used}
     able = [column for column in columns if id(column) not in taken and column.prose]
     return _telling_most(able, lambda column: column.told)
+
+
+def sentences_of_dimensions(columns: Sequence[Column], told: Sequence[Column], used: Iterable[Column]) -> Column | None:
+    """Return the column whose sentences tell the sizes of objects of which the columns for sizes tell none.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    told : sequence of Column
+        That are for sizes; without any nothing is beside them.
+    used : iterable of Column
+        Those that are fields already.
+
+    Returns
+    -------
+    Column or None
+        None where there are fewer than `FEWEST_TOLD` such objects, or they are less than a tenth of those without.
+    """
+    taken = {id(column) for column in (*told, *used)}
+    able = [column for column in columns if id(column) not in taken and (column.prose or _describes(column))]
+    if not told or not able:
+        return None
+    bare = [not any(_told(cell) for cell in cells) for cells in zip(*(one.values for one in told), strict=True)]
+    often = [
+        (sum(_tells_sides(text) for text, alone in zip(column.values, bare, strict=True) if alone), column)
+        for column in able
+    ]
+    most, column = max(often, key=lambda pair: pair[0])
+    return column if most >= FEWEST_TOLD and most >= 0.1 * sum(bare) else None
+
+
+def _describes(column: Column) -> bool:
+    what = named(column.name)
+    return what is not None and what.field == DESCRIPTION
+
+
+def _tells_sides(text: str) -> bool:
+    """Whether sentences name a side and its size: one with a unit, or two without."""
+    sides = [p for p in parse(text, prose=True).parts if p.dimension in _NAMED and not p.assumed]
+    return any(p.unit for p in sides) or len(sides) > 1
 
 
 def _telling_most(columns: Sequence[Column], share: Callable[[Column], float]) -> Column | None:

@@ -12,7 +12,7 @@ import tomlkit
 from pipeline.collection.display_words import flag_of, says_away, says_flags, tells_nothing
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import NUMBER, Column
-from pipeline.collection.guessing.names import bare, named, unit_in
+from pipeline.collection.guessing.names import TEXTS, bare, named, unit_in
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
@@ -87,7 +87,7 @@ def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:
             if not isinstance(number, TypedNumber) and NUMBER.fullmatch(number.strip()):
                 commas += "," in number and not (parted and _THOUSANDS.fullmatch(number.strip()))
                 points += "." in number
-        if not column.numeric and column.dimensional > 0.2:
+        if not column.numeric and (column.dimensional > 0.2 or (what is not None and what.field == TEXTS)):
             for text in column.filled:
                 commas += len(_COMMA.findall(text))
                 points += len(_POINT.findall(text))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from pipeline.collection.guessing.columns import NUMBER, Column, candidates
-from pipeline.collection.guessing.names import plain
-from pipeline.collection.sources.base import LongForm
+from pipeline.collection.guessing.names import named, plain, unit_in
+from pipeline.collection.sources.base import LongForm, LongSide
 from pipeline.collection.sources.measurement_terms import kind_of, part_of, plain_word, unit_of
 
 _LETTERS = frozenset(("h", "b", "l", "t", "d", "w", "p", "a", "dm", "dia", "diam", "ø", "g", "gew", "wt", "kg"))
@@ -16,6 +16,13 @@ _MOST_LETTERS = 12
 
 _SEPARATORS = ("$", "|", ";", "\n")
 """What exports put between several values of one field in a cell."""
+
+_SIDES = ("height_m", "width_m", "depth_m", "diameter_m", "mass_kg")
+_KIND = {"mass": "weight"}
+FEWEST_SIDES, FEWEST_SEVERAL = 2, 2
+"""Columns of sides, and objects with several rows, from which rows are taken for those of parts (judgement)."""
+APART = 0.8
+"""Share of these objects whose rows each must name another part (judgement)."""
 
 VALUES = frozenset(
     {
@@ -31,7 +38,8 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
     """Return how a table in long form is read; None for one with a row for each object.
 
     It is one where a column names kinds of measurements, at least two of them, beside a column of numbers, while object
-    numbers repeat or are left empty; or where one cell names several kinds, and the next their values.
+    numbers repeat or are left empty; or where one cell names several kinds, and the next their values; or where rows of
+    one object differ by the part that they measure, each with several sides.
 
     Parameters
     ----------
@@ -42,7 +50,7 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
     -------
     LongForm or None
     """
-    within = _within(columns)
+    within = _within(columns) or _of_parts(columns)
     if within is not None:
         return within
     types = [c for c in columns if (c.kinds >= 0.6 or _lettered(c)) and len(c.distinct) > 1]
@@ -104,6 +112,52 @@ def _within(columns: Sequence[Column]) -> LongForm | None:
                 separator=separator,
             )
     return None
+
+
+def _of_parts(columns: Sequence[Column]) -> LongForm | None:
+    """Return how rows are read of which each measures a part, the sides in columns of their own, as EMu and TMS do."""
+    able = candidates(columns)
+    number = next((one for one in able.get("object_number", ()) if one.filled), None)
+    sides = [(name.removesuffix("_m").removesuffix("_kg"), found) for name, found in able.items() if name in _SIDES]
+    if number is None or len(sides) < FEWEST_SIDES:
+        return None
+    several = [texts for texts in _groups(number.values, range(len(number.values))) if len(texts) > 1]
+    if len(several) < FEWEST_SEVERAL:
+        return None
+    measured = {id(column) for _, those in sides for column in those} | {id(number)}
+    parts = [
+        (sum(_differ(column, rows) for rows in several), column)
+        for column in columns
+        if id(column) not in measured and named(column.name) is None and column.filled and not column.numeric
+    ]
+    most, part = max(parts, key=lambda pair: pair[0], default=(0, number))
+    if most < APART * len(several) or len(part.distinct) == len(part.filled):
+        return None
+    called = next((able[name][0] for name in ("object_name", "title") if able.get(name)), None)
+    return LongForm(
+        object=number.name,
+        part=part.name,
+        called=None if called is None or called is part else called.name,
+        sides=tuple(
+            LongSide(column=one.name, kind=_KIND.get(kind, kind), unit=unit_in(one.name)[1] or "")
+            for kind, those in sides
+            for one in those
+        ),
+    )
+
+
+def _groups(numbers: Sequence[str], rows: Iterable[int]) -> Iterable[list[int]]:
+    found: dict[str, list[int]] = {}
+    for at in rows:
+        if numbers[at].strip():
+            found.setdefault(numbers[at].strip(), []).append(at)
+    return found.values()
+
+
+def _differ(column: Column, rows: Sequence[int]) -> bool:
+    """Whether the rows of one object each say something else."""
+    said = [column.values[at].strip() for at in rows]
+    return all(said) and len(set(said)) == len(said)
 
 
 def _number(text: str) -> str | None:

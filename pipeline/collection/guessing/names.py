@@ -15,8 +15,10 @@ from pydantic import AfterValidator
 from pipeline.collection.mapping import MAPPABLE
 from pipeline.collection.record import units_of
 from pipeline.collection.sources.heads import BETWEEN
+from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.errors import InputError
 from pipeline.tables import table
+from pipeline.tables.ideographs import shortened_signs
 from pipeline.tables.rows import Entries, checked
 
 TEXTS = "dimensions"
@@ -33,6 +35,8 @@ _INTERNAL = {"object_number": "identifier", "gallery": "home location"}
 
 _UNITS = r"mm|cm|m|in|inch|inches|ft|kg|g|gr|lb|lbs|oz"
 _ENCLOSED = re.compile(rf"[(\[]\s*(?:in\s+|en\s+)?({_UNITS})\.?\s*[)\]]", re.IGNORECASE)
+_ELSEWISE = re.compile(r"[(\[（]\s*(?:в\s+|σε\s+)?([^\W\d_]+)\.?\s*[)\]）]|[\s_,/]+([^\W\d_]+)\.?\s*$")
+"""Where a unit may stand that is written in other letters: "Размер (см)", "高度（厘米）"."""
 _TRAILING = re.compile(rf"(?:[\s_,/]+(?:in|en)\s+|[\s_,/]+)({_UNITS})\.?\s*$", re.IGNORECASE)
 _JOINED = re.compile(r"(\w{4,}?)(mm|cm|in|ft|kg|lb|lbs|oz)", re.IGNORECASE)
 """A name of one word that ends with a unit: "HEIGHTIN", "weightKg"."""
@@ -50,7 +54,7 @@ _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
 _GLUED = re.compile(r"(\w{3,}?)(?:number|nummer|num|nr|no)")
 """A name of one word that ends with a word for number: "accessionnum"."""
-_GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Obj|Acc|Ide|Dim|Mea|Reg|Tax|Cla|Spe|Sta|Dar)(?=[A-Z])")
+_GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Col|Obj|Acc|Ide|Dim|Mea|Reg|Tax|Cla|Spe|Sta|Dar)(?=[A-Z])")
 """Before a name: of which group of fields it is, in systems that write it so (EMu, MuseumPlus): "TitObjectNumber"."""
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _TYPED = re.compile(r"(?<=[a-z])(?:Txt|Clb|Vrt|Num|Voc|Lnu)$")
@@ -213,7 +217,8 @@ def plain(name: str) -> str:
     )
     # NFKD takes the voicing marks off Japanese signs; they are put together again.
     # In capitals nobody can tell the two i of Turkish apart.
-    words = _OTHER.sub(" ", normalize("NFC", bare).casefold().replace("ı", "i")).split()
+    bare = shortened_signs(normalize("NFC", bare))
+    words = _OTHER.sub(" ", bare.casefold().replace("ı", "i")).split()
     kept = ["no" if word in _NUMBER_WORDS else word for word in words if word not in _STOP]
     return " ".join(kept or words)
 
@@ -242,6 +247,11 @@ def unit_in(name: str) -> tuple[str, str | None]:
         if found is not None and (name[: found.start()] + name[found.end() :]).strip():
             unit = found[1].casefold()
             return f"{name[: found.start()]} {name[found.end() :]}".strip(), _UNIT.get(unit, unit)
+    for found in _ELSEWISE.finditer(name):
+        written = found[1] or found[2]
+        told = None if written.isascii() else unit_of(written)
+        if told is not None and (name[: found.start()] + name[found.end() :]).strip():
+            return f"{name[: found.start()]} {name[found.end() :]}".strip(), told
     joined = _JOINED.fullmatch(name.strip())
     if joined is not None:
         said = _names().get(plain(joined[1]))

@@ -109,7 +109,7 @@ def language_of(columns: Sequence[Column]) -> tuple[str, str]:
     )
 
 
-def unit_of_texts(columns: Sequence[Column], language: str) -> tuple[str, str]:
+def unit_of_texts(columns: Sequence[Column], language: str, prose: Sequence[Column] = ()) -> tuple[str, str]:
     """Return the unit of the lengths that name none, as the column's other texts have it, and what to say of it.
 
     Parameters
@@ -118,15 +118,18 @@ def unit_of_texts(columns: Sequence[Column], language: str) -> tuple[str, str]:
         Of dimension texts.
     language : str
         Of their labels; "" where each text is read by itself.
+    prose : sequence of Column
+        Those of the columns that hold sentences.
 
     Returns
     -------
     (str, str)
         "" where all name one, or too few, or several, or where what names none would be of quite another size.
     """
-    texts = [plain_text(text) for column in columns for text in column.distinct[:_SOME]]
-    read = [_lengths(parse(text, language=language).parts) for text in texts]
-    bare = [text for text, parts in zip(texts, read, strict=True) if parts and not any(part.unit for part in parts)]
+    held = {id(column) for column in prose}
+    texts = [(plain_text(text), id(column) in held) for column in columns for text in column.distinct[:_SOME]]
+    read = [_lengths(parse(text, language=language, prose=sentences).parts) for text, sentences in texts]
+    bare = [one for one, parts in zip(texts, read, strict=True) if parts and not any(part.unit for part in parts)]
     told = [parts for parts in read if parts and parts[0].unit]
     if not bare or len(told) < FEWEST_UNITS:
         return "", ""
@@ -134,7 +137,10 @@ def unit_of_texts(columns: Sequence[Column], language: str) -> tuple[str, str]:
     if often < ALIKE * len(told):
         return "", ""
     theirs = median(_largest(parts) for parts in told)
-    others = median(_largest(_lengths(parse(text, language=language, default_unit=unit).parts)) for text in bare)
+    others = median(
+        _largest(_lengths(parse(text, language=language, default_unit=unit, prose=sentences).parts))
+        for text, sentences in bare
+    )
     if not theirs / FARTHEST < others < theirs * FARTHEST:
         return "", ""
     return unit, (

@@ -351,10 +351,13 @@ def objects_of(name: str, source: dict[str, Any], columns: list[Column], told: G
         f"cells hold several measurements, parted by {long.separator!r}: {long.type!r} says which, {long.value!r} how "
         "much"
         if long.separator
+        else f"each part of an object has a row of its own, and {long.part!r} says which: they are gathered by "
+        f"{long.object!r}, the object itself counts"
+        if long.sides
         else f"each measurement has a row of its own: {long.type!r} says which, {long.value!r} how much; they are "
         f"gathered by {long.object!r}"
     )
-    if long.unit is None:
+    if long.unit is None and not long.sides:
         told.doubts.append(f"no column tells the unit of {long.value!r}: its numbers are refused where they name none")
     rows = [
         Row(number, number, list(cells))

@@ -115,6 +115,20 @@ def _folded(text: str) -> str:
     return "".join(one for one in normalize("NFKD", text) if not combining(one)).casefold()
 
 
+def in_place_of_title(able: Mapping[str, Sequence[Column]], found: Mapping[str, Column]) -> Column | None:
+    """Return the description of things that have a name and no title: it says more of each than its name.
+
+    Parameters
+    ----------
+    able, found : mapping
+        As of `named_by`.
+    """
+    name, title = found.get("object_name"), found.get("title")
+    if name is None or not name.filled or (title is not None and title.filled):
+        return None
+    return next((one for one in able.get(DESCRIPTION, ()) if one.filled and one is not name), None)
+
+
 def describing(able: Mapping[str, Sequence[Column]], title: Column) -> Column | None:
     """Return the description beside a column that is called "name", which says more of each thing than its name.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,6 +35,8 @@ class Difference:
         Object numbers, sorted.
     changed : mapping of str
         Object number -> field -> (the record as it is, the record as it will be), JSON-ready.
+    renumbered : tuple of (str, str)
+        Of those removed and added: what is the same but for its number, as it was and as it will be.
     """
 
     before: int
@@ -42,6 +44,7 @@ class Difference:
     added: tuple[str, ...]
     removed: tuple[str, ...]
     changed: Mapping[str, Mapping[str, tuple[Any, Any]]]
+    renumbered: tuple[tuple[str, str], ...] = ()
 
     @property
     def counts(self) -> ChangeCounts:
@@ -51,6 +54,34 @@ class Difference:
     def __bool__(self) -> bool:
         """Whether anything changes."""
         return bool(self.added or self.removed or self.changed)
+
+
+def renumbered(gone: Iterable[Item], new: Iterable[Item]) -> tuple[tuple[str, str], ...]:
+    """Return the numbers of records that are alike in name, title, material, place and sizes, no other being like them.
+
+    Parameters
+    ----------
+    gone, new : iterable of Item
+        Records that an inventory loses and gains at once.
+
+    Returns
+    -------
+    tuple of (str, str)
+        The number that is gone, and the new one; none of records without a name or a size.
+    """
+    before, after = _alike(gone), _alike(new)
+    pairs = ((numbers, after.get(what, [])) for what, numbers in before.items())
+    return tuple(sorted((old[0], now[0]) for old, now in pairs if len(old) == len(now) == 1))
+
+
+def _alike(items: Iterable[Item]) -> dict[tuple[Any, ...], list[str]]:
+    found: dict[tuple[Any, ...], list[str]] = {}
+    for item in items:
+        named = (item.title, item.object_name, item.classification, item.medium)
+        sides = (item.height_m, item.width_m, item.depth_m, item.mass_kg)
+        if any(named) and any(side is not None for side in sides):
+            found.setdefault((*named, item.gallery, *sides), []).append(item.object_number)
+    return found
 
 
 def fields_changed(then: Item, now: Item) -> dict[str, tuple[Any, Any]]:

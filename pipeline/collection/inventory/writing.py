@@ -11,7 +11,7 @@ from sqlalchemy import Connection, Engine, and_, bindparam, func, insert, select
 
 from pipeline.collection.errors import CollectionError, ShrunkError
 from pipeline.collection.inventory import local_measurements, reading_report
-from pipeline.collection.inventory.differences import Difference, fields_changed
+from pipeline.collection.inventory.differences import Difference, fields_changed, renumbered
 from pipeline.collection.inventory.local_measurements import filled_in, laid_over
 from pipeline.collection.inventory.records import damaged_now, read_records, require_all, stored_records
 from pipeline.collection.inventory.source_rows import SourceKey, store_source
@@ -287,7 +287,13 @@ def _difference(
             changed[number] = fields
     removed = sorted(old.keys() - {item.object_number for item in items})
     others = 0 if unread is None else unread.objects
-    return Difference(len(old) + others, len(items) + others, tuple(added), tuple(removed), changed), digests
+    new = set(added)
+    same = renumbered(
+        stored_records(connection, removed if added else []).values(),
+        (item for item in items if removed and item.object_number in new),
+    )
+    counts = len(old) + others, len(items) + others
+    return Difference(*counts, tuple(added), tuple(removed), changed, same), digests
 
 
 def _write(

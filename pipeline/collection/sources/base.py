@@ -11,15 +11,16 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from io import BufferedReader
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, cast
+from typing import Annotated, Any, ClassVar, Literal, Self, cast
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import Limits
 from pipeline.collection.sources.files import unpacked, unreadable
 from pipeline.collection.sources.folders import Folder, line_of
 from pipeline.collection.sources.rows import Row
+from pipeline.errors import InputError
 
 Name = Annotated[str, Field(min_length=1)]
 
@@ -27,14 +28,26 @@ HEAD = 4096
 """Bytes of the beginning of a file by which a source may recognise it."""
 
 
+class LongSide(BaseModel):
+    """A column of one side of parts, in a source in long form."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    column: Name = Field(description="The column with its numbers.")
+    kind: Name = Field(description="What it is, such as height.")
+    unit: str = Field(default="", description="Unit of the numbers that name none.")
+
+
 class LongForm(BaseModel):
-    """A source in long form: several rows an object, each with one of its measurements."""
+    """A source in long form: several rows an object, each with one of its measurements, or with one of its parts."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     object: Name = Field(description="The column with the object's number; an empty cell is of the object above.")
-    type: Name = Field(description="The column that says what was measured, such as height or Breite.")
-    value: Name = Field(description="The column with the numbers.")
+    type: Name | None = Field(
+        default=None, description="The column that says what was measured, such as height or Breite."
+    )
+    value: Name | None = Field(default=None, description="The column with the numbers.")
     unit: Name | None = Field(default=None, description="The column with their units.")
     part: Name | None = Field(default=None, description="The column that says of which part, such as whole or frame.")
     separator: str = Field(
@@ -43,6 +56,20 @@ class LongForm(BaseModel):
         description="What parts several measurements in one cell, height$width beside 120$97.5, as exports of Axiell "
         'do; "" where each has a row of its own.',
     )
+    sides: tuple[LongSide, ...] = Field(
+        default=(), description="In place of type and value: columns of the sides of a part, where each has a row."
+    )
+    called: Name | None = Field(
+        default=None, description="The column with the name of the object: a part that is called so is the object."
+    )
+
+    @model_validator(mode="after")
+    def _either(self) -> Self:
+        if bool(self.sides) == (self.type is not None or self.value is not None):
+            raise InputError("[source.long] takes either type and value, or sides")
+        if not self.sides and (self.type is None or self.value is None):
+            raise InputError("[source.long] has only one of type and value; add the other")
+        return self
 
 
 class SourceSettings(BaseModel):

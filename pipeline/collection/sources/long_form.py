@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -14,6 +15,10 @@ from pipeline.collection.sources.rows import Row
 
 COLUMNS = OF_MEASUREMENTS
 """What takes the place of the columns of type, value, unit and part."""
+
+_WORDS = re.compile(r"\w+")
+_NUMBERED = re.compile(r"_\d+$")
+"""Behind a part of which there are several: overall_1."""
 
 _Fault = tuple[str, str]
 _MOST = 200
@@ -70,25 +75,30 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
     if header is None:
         return
     names = [name.strip() for name in header.cells]
-    for key, name in (
+    keyed = (
         ("object", long.object),
         ("type", long.type),
         ("value", long.value),
         ("unit", long.unit),
         ("part", long.part),
-    ):
+        ("called", long.called),
+        *(("sides", side.column) for side in long.sides),
+    )
+    for key, name in keyed:
         if name is not None and name not in names:
             raise CollectionError(
                 f"{file}: [source.long] {key}: there is no column {name!r}; its columns are "
                 f"{', '.join(map(repr, names[:80]))}. Name one of them in the mapping"
             )
-    told = {names.index(name) for name in (long.type, long.value, long.unit, long.part) if name is not None}
+    telling = (long.type, long.value, long.unit, long.part, *(side.column for side in long.sides))
+    told = {names.index(name) for name in telling if name is not None}
     kept = [at for at in range(len(names)) if at not in told]
     yield Row(0, header.line, [header.cells[at] for at in kept] + list(COLUMNS))
     number_at = names.index(long.object)
-    type_at, value_at = names.index(long.type), names.index(long.value)
-    unit_at = None if long.unit is None else names.index(long.unit)
-    part_at = None if long.part is None else names.index(long.part)
+    places = tuple(None if one is None else names.index(one) for one in (long.type, long.value, long.unit, long.part))
+    part_at = places[3]
+    called_at = None if long.called is None else names.index(long.called)
+    sides = [(names.index(side.column), side) for side in long.sides]
     objects: dict[str, _Gathered] = {}
     broken: list[Row] = []
     above = ""
@@ -108,8 +118,14 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
             if not found.cells[place] and row.cells[at]:
                 found.cells[place] = row.cells[at]
                 found.faults.pop(place, None)
-        for said in _apart(row, (type_at, value_at, unit_at, part_at), long.separator):
-            _measure(found, said)
+        if sides:
+            called = "" if called_at is None else row.cells[called_at]
+            part = _own_part("" if part_at is None else row.cells[part_at], called)
+            for at, side in sides:
+                _measure(found, _LongCell(side.kind, row.cells[at], side.unit, part, row.faults.get(at)))
+        else:
+            for said in _apart(row, places, long.separator):
+                _measure(found, said)
     width = len(kept)
     last = 0
     for found in objects.values():
@@ -121,9 +137,19 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
         yield Row(place, row.line, row.cells + [""] * (width + len(COLUMNS) - len(row.cells)), row.fault)
 
 
-def _apart(row: Row, places: tuple[int, int, int | None, int | None], separator: str) -> Iterator[_LongCell]:
+def _own_part(part: str, called: str) -> str:
+    """Return "" for a part that is the object itself, for the object is called so: the microscope of a microscope."""
+    words = [word.casefold() for word in _WORDS.findall(part)]
+    return (
+        ""
+        if words and words == [w.casefold() for w in _WORDS.findall(called)][: len(words)]
+        else _NUMBERED.sub("", part)
+    )
+
+
+def _apart(row: Row, places: tuple[int | None, ...], separator: str) -> Iterator[_LongCell]:
     """Yield each measurement of a row; one cell says several in the order of the others, its last for all behind it."""
-    fault = next((row.faults[at] for at in places[:2] if at in row.faults), None)
+    fault = next((row.faults[at] for at in places[:2] if at is not None and at in row.faults), None)
     cells = ["" if at is None else row.cells[at] for at in places]
     if not separator or fault is not None:
         kind, value, unit, part = cells

@@ -73,6 +73,7 @@ class Measurements:
         self._unit = unit
         self._cells: dict[str, str] = {}
         self._si: dict[str, float | None] = {}
+        self._told: dict[tuple[str, str | None], list[float]] = {}
         self._faults: dict[str, tuple[str, str]] = {}
         self._others: list[str] = []
         self._words: list[str] = []
@@ -109,6 +110,11 @@ class Measurements:
             return
         named = unit_of(unit) or unit.strip() or (self._unit if kind != "weight" else None) or ""
         text = f"{value} {named}".strip()
+        size = _si(value, named)
+        if any(size is not None and isclose(size, other, rel_tol=SAME) for other in self._told.get((said, kind), ())):
+            return  # the same in another unit
+        if size is not None:
+            self._told.setdefault((said, kind), []).append(size)
         # No field is for the sides of a frame; what is said of a base has columns of its own.
         in_column = kind is not None and part is not None and (not part or (part == "base" and kind != "diameter"))
         self._in_columns &= in_column
@@ -119,12 +125,13 @@ class Measurements:
             self._others.append(f"{said}: {text}" if said else text)
             return
         column = f"{part} {kind}".strip()
-        si = _si(value, named)
         if column not in self._cells:
-            self._cells[column], self._si[column] = text, si
+            self._cells[column], self._si[column] = text, size
             return
         before = self._si[column]
-        if text == self._cells[column] or (si is not None and before is not None and isclose(si, before, rel_tol=SAME)):
+        if text == self._cells[column] or (
+            size is not None and before is not None and isclose(size, before, rel_tol=SAME)
+        ):
             return
         self._others.append(f"{said or column}: {text}")
         self._faults[column] = (
