@@ -25,6 +25,7 @@ from pipeline.collection.guessing.columns import texts_of_dimensions as texts_am
 from pipeline.collection.guessing.fields import (
     Fields,
     Question,
+    asked_unit,
     decimal_of,
     flag_among,
     images_among,
@@ -306,10 +307,10 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         if language:
             document["dimensions"]["language"] = language
             told.doubts.append(said)
-        unit, said = (units.pop(), "") if len(units) == 1 else unit_of_texts(texts, language, prose)
-        if unit:
+        if unit := told.choices.get("unit") or (
+            units.pop() if len(units) == 1 else _untold(texts, language, prose, told)
+        ):
             document["dimensions"]["unit"] = unit
-        told.doubts += [said] * bool(said)
         order, said = order_of(texts)
         if order:
             document["dimensions"]["order"] = list(order)
@@ -343,6 +344,16 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     text = tomlkit.dumps(document)
     proposal = Proposal.model_validate(document.unwrap())
     return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure))
+
+
+def _untold(texts: Sequence[Column], language: str, prose: Sequence[Column], told: GuessNotes) -> str:
+    """Return the unit of dimension texts that name none, and say so; "" for none."""
+    untold = unit_of_texts(texts, language, prose)
+    told.doubts += [untold.said] * bool(untold.said)
+    if not untold.numbers:
+        return untold.unit
+    named = [column.name for column in texts if column not in prose]
+    return asked_unit(named, untold.numbers, told.doubts, told.questions)
 
 
 def _add_misspelt(columns: Sequence[Column], able: dict[str, list[Column]], told: GuessNotes) -> None:

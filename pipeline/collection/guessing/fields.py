@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from statistics import median
 
 import tomlkit
 
@@ -13,21 +12,12 @@ from pipeline.collection.display_words import flag_of, says_away, says_flags, te
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import NUMBER, Column
 from pipeline.collection.guessing.names import TEXTS, bare, named, unit_in
+from pipeline.collection.guessing.units import usual_unit
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.collection.sources.rows import TypedNumber
 from pipeline.tables.held_rows import HeldAs, told_by
-
-FEWEST = 5
-"""Numbers in eighths or sixteenths from which a column is taken to be in inches."""
-
-USUAL_MM = 150
-"""Median of whole numbers from which lengths are taken to be in millimetres: half of all objects are no metre and a
-half."""
-
-USUAL_M = 1.5
-"""Median of lengths up to which they may be in metres."""
 
 MOST_WORDS = 30
 """Different texts that a column of flags has at most."""
@@ -41,9 +31,6 @@ _HELD = {"furniture_anchorage": "anchorage"}
 _NAMING = 0.5
 """Share of a column's texts that name a unit from which each is read with its own."""
 
-_TENTHS = re.compile(r"\d*[.,][1-46-9]")
-_HUNDREDTHS = re.compile(r"\d[.,]\d{2,3}")
-_SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _COMMA = re.compile(r"(?<![\d,.])\d+,\d{1,2}(?![\d,.])", re.ASCII)
 _POINT = re.compile(r"(?<![\d,.])\d+\.\d{1,2}(?![\d,.])", re.ASCII)
@@ -383,9 +370,10 @@ class Fields:
             return self._by_hand(column, unit or common)
         if unit is None and not column.numeric:
             if column.dimensional <= _NAMING:
+                what, unit = ("weights", "kg") if "kg" in units else ("lengths", "cm")
                 self.doubts.append(
-                    f"column {column.name!r} holds neither numbers nor lengths with units: left out; --choose "
-                    f"{name}.unit=cm takes it nevertheless"
+                    f"column {column.name!r} holds neither numbers alone nor mostly {what} with units: left out; "
+                    f"--choose {name}.unit={unit} takes it nevertheless"
                 )
                 return None
             unit = WRITTEN
@@ -456,27 +444,26 @@ class Fields:
     def _common_unit(self, untold: Mapping[str, Column]) -> str:
         """Return the unit of the lengths that tell none, which one file has in common, and ask about it."""
         numbers = [number for column in untold.values() for number in column.numbers]
-        sixteenths = sum(bool(_SIXTEENTHS.fullmatch(n)) for n in numbers)
-        tenths = sum(bool(_TENTHS.fullmatch(n)) for n in numbers)
-        whole = sum(n.isdecimal() for n in numbers)
-        unit, why = "cm", "centimetres are taken"
-        if sixteenths >= FEWEST and sixteenths > 3 * tenths:
-            unit, why = "in", "inches are taken, for they have eighths and sixteenths"
-        elif whole > 0.98 * len(numbers) and median(float(n.replace(",", ".")) for n in numbers) >= USUAL_MM:
-            unit, why = "mm", "millimetres are taken, for they are large and whole"
-        elif _in_metres(numbers):
-            unit, why = "m", "metres are taken, for most are small and go to the centimetre"
-        names = ", ".join(repr(column.name) for column in untold.values())
-        self.doubts.append(f"no unit is told for {names}: {why}; --choose unit=mm (cm, in, ...) takes another")
-        self.questions.append(Question("unit", f"in which unit are {names}?", tuple(units_of("height_m")), unit))
-        return unit
+        return asked_unit([column.name for column in untold.values()], numbers, self.doubts, self.questions)
 
 
-def _in_metres(numbers: Sequence[str]) -> bool:
-    """Whether lengths are rather metres: in centimetres hardly anybody writes hundredths, 0.83, of what is small."""
-    fine = sum(bool(_HUNDREDTHS.fullmatch(number)) for number in numbers)
-    small = median(float(number.replace(",", ".")) for number in numbers) < USUAL_M if numbers else False
-    return len(numbers) >= FEWEST and fine >= 0.6 * len(numbers) and small
+def asked_unit(names: Sequence[str], numbers: Sequence[str], doubts: list[str], questions: list[Question]) -> str:
+    """Return the unit of lengths that tell none, by what numbers in it look like; say so and ask.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of their columns.
+    numbers : sequence of str
+        As written.
+    doubts, questions : list
+        What is said and asked goes there.
+    """
+    unit, why = usual_unit(numbers)
+    told = ", ".join(map(repr, names))
+    doubts.append(f"no unit is told for {told}: {why}; --choose unit=mm (cm, in, ...) takes another")
+    questions.append(Question("unit", f"in which unit are {told}?", tuple(units_of("height_m")), unit))
+    return unit
 
 
 def _unit_column(column: Column, columns: Sequence[Column], units: Mapping[str, float]) -> Column | None:

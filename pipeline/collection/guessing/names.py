@@ -12,10 +12,10 @@ from unicodedata import combining, normalize
 
 from pydantic import AfterValidator
 
+from pipeline.collection.guessing.units import told_unit
 from pipeline.collection.mapping import MAPPABLE
 from pipeline.collection.record import units_of
 from pipeline.collection.sources.heads import BETWEEN
-from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.errors import InputError
 from pipeline.tables import table
 from pipeline.tables.ideographs import shortened_signs
@@ -33,11 +33,6 @@ LENGTH = "length_m"
 _INTERNAL = {"object_number": "identifier", "gallery": "home location"}
 """The first of the names of object numbers that are a database's own, and of those of usual places."""
 
-_UNITS = r"mm|cm|m|in|inch|inches|ft|kg|g|gr|lb|lbs|oz"
-_ENCLOSED = re.compile(rf"[(\[]\s*(?:in\s+|en\s+)?({_UNITS})\.?\s*[)\]]", re.IGNORECASE)
-_ELSEWISE = re.compile(r"[(\[（]\s*(?:в\s+|σε\s+)?([^\W\d_]+)\.?\s*[)\]）]|[\s_,/]+([^\W\d_]+)\.?\s*$")
-"""Where a unit may stand that is written in other letters: "Размер (см)", "高度（厘米）"."""
-_TRAILING = re.compile(rf"(?:[\s_,/]+(?:in|en)\s+|[\s_,/]+)({_UNITS})\.?\s*$", re.IGNORECASE)
 _JOINED = re.compile(r"(\w{4,}?)(mm|cm|in|ft|kg|lb|lbs|oz)", re.IGNORECASE)
 """A name of one word that ends with a unit: "HEIGHTIN", "weightKg"."""
 _UNIT = {"inch": "in", "inches": "in", "lbs": "lb", "gr": "g"}
@@ -243,15 +238,9 @@ def unit_in(name: str) -> tuple[str, str | None]:
             if unit is not None:
                 return (f"{rest}{BETWEEN}{second}" if first is upper else f"{second}{BETWEEN}{rest}"), unit
         return name, None
-    for found in (_ENCLOSED.search(name), _TRAILING.search(name)):
-        if found is not None and (name[: found.start()] + name[found.end() :]).strip():
-            unit = found[1].casefold()
-            return f"{name[: found.start()]} {name[found.end() :]}".strip(), _UNIT.get(unit, unit)
-    for found in _ELSEWISE.finditer(name):
-        written = found[1] or found[2]
-        told = None if written.isascii() else unit_of(written)
-        if told is not None and (name[: found.start()] + name[found.end() :]).strip():
-            return f"{name[: found.start()]} {name[found.end() :]}".strip(), told
+    rest, unit = told_unit(name)
+    if unit is not None:
+        return rest, unit
     joined = _JOINED.fullmatch(name.strip())
     if joined is not None:
         said = _names().get(plain(joined[1]))

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from statistics import median
 
 from pipeline.collection.dimensions import labels, languages, parse
@@ -16,6 +17,7 @@ from pipeline.collection.dimensions.result import DimensionPart
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.names import LEGEND
+from pipeline.quantities import counted
 
 FEWEST = 3
 """Texts that must label their numbers before the others are read in their order (judgement)."""
@@ -23,7 +25,7 @@ FEWEST = 3
 MOST = 0.9
 """Share of those texts that must have one order."""
 
-FEWEST_UNITS = 5
+FEWEST_UNITS = 3
 """Texts that must name a unit before others are read in it (judgement)."""
 
 ALIKE = 0.95
@@ -37,6 +39,7 @@ _SOME = 1000
 
 _SIDES = frozenset({"height", "width", "depth", "length", "diameter"})
 _JOINED = re.compile(r"[x×]", re.IGNORECASE)
+_NUMBER = re.compile(r"\d+(?:[.,]\d+)?", re.ASCII)
 
 
 def order_of(columns: Sequence[Column]) -> tuple[tuple[str, ...], str]:
@@ -109,8 +112,30 @@ def language_of(columns: Sequence[Column]) -> tuple[str, str]:
     )
 
 
-def unit_of_texts(columns: Sequence[Column], language: str, prose: Sequence[Column] = ()) -> tuple[str, str]:
-    """Return the unit of the lengths that name none, as the column's other texts have it, and what to say of it.
+@dataclass(frozen=True, slots=True)
+class UntoldUnits:
+    """The texts of columns that name no unit.
+
+    Attributes
+    ----------
+    texts : int
+        How many there are.
+    unit : str
+        That of the others, where they are alike, and it would not make the texts of quite another size; else "".
+    numbers : tuple of str
+        What stands in the texts, where no other text names a unit either; else ().
+    said : str
+        What to say of it; "" for nothing.
+    """
+
+    texts: int = 0
+    unit: str = ""
+    numbers: tuple[str, ...] = ()
+    said: str = ""
+
+
+def unit_of_texts(columns: Sequence[Column], language: str, prose: Sequence[Column] = ()) -> UntoldUnits:
+    """Return what becomes of the lengths that name no unit, by the columns' other texts.
 
     Parameters
     ----------
@@ -119,33 +144,40 @@ def unit_of_texts(columns: Sequence[Column], language: str, prose: Sequence[Colu
     language : str
         Of their labels; "" where each text is read by itself.
     prose : sequence of Column
-        Those of the columns that hold sentences.
+        Those of the columns that hold sentences: numbers in them may be anything.
 
     Returns
     -------
-    (str, str)
-        "" where all name one, or too few, or several, or where what names none would be of quite another size.
+    UntoldUnits
+        Of no texts where all name one.
     """
     held = {id(column) for column in prose}
     texts = [(plain_text(text), id(column) in held) for column in columns for text in column.distinct[:_SOME]]
     read = [_lengths(parse(text, language=language, prose=sentences).parts) for text, sentences in texts]
     bare = [one for one, parts in zip(texts, read, strict=True) if parts and not any(part.unit for part in parts)]
     told = [parts for parts in read if parts and parts[0].unit]
-    if not bare or len(told) < FEWEST_UNITS:
-        return "", ""
+    if not bare:
+        return UntoldUnits()
+    if not told:
+        numbers = [number for text, sentences in bare if not sentences for number in _NUMBER.findall(text)]
+        return UntoldUnits(len(bare), numbers=tuple(numbers))
     unit, often = Counter(parts[0].unit for parts in told).most_common(1)[0]
-    if often < ALIKE * len(told):
-        return "", ""
     theirs = median(_largest(parts) for parts in told)
     others = median(
         _largest(_lengths(parse(text, language=language, default_unit=unit, prose=sentences).parts))
         for text, sentences in bare
     )
-    if not theirs / FARTHEST < others < theirs * FARTHEST:
-        return "", ""
-    return unit, (
-        f"{len(bare)} texts name no unit: read in {unit}, as {often} of {len(told)} others have it; take unit out "
-        "of [dimensions] where that is wrong"
+    if len(told) < FEWEST_UNITS or often < ALIKE * len(told) or not theirs / FARTHEST < others < theirs * FARTHEST:
+        return UntoldUnits(
+            len(bare),
+            said=f"{counted(len(bare), 'text')} of sizes without a unit: not read; --choose unit=cm (mm, in, ...) "
+            "takes one for all of these",
+        )
+    return UntoldUnits(
+        len(bare),
+        unit,
+        said=f"{len(bare)} texts name no unit: read in {unit}, as {often} of {len(told)} others have it; take unit out "
+        "of [dimensions] where that is wrong",
     )
 
 

@@ -12,6 +12,13 @@ HEADING = "heading"
 """The column with the heading under which a row stands."""
 
 _FIGURES = re.compile(r"\d+")
+_SUM = re.compile(
+    r"(?:(?:grand |sub-?)?totale?s?|totaal|sum|summe|gesamt|insgesamt|suma|soma|somme|ukupno|celkem|razem|összesen"
+    r"|toplam|yhteensä|summa|i alt|antal|anzahl|count|σύνολο|итого|всего|合計|合计|总计|總計|총계|計)(?![^\W\d_])"
+    r"|[^\W\d]{3,}:\s+\d+\b",
+    re.IGNORECASE,
+)
+"""How a row begins that sums the others up: "Total 168", "Objects: 168"."""
 _MOST_SHAPES = 10_000
 
 MERGED = "is one of the merged cells"
@@ -122,6 +129,10 @@ def heads_or_sums(row: Row, number: str, beside: Set[int]) -> str:
     """
     if beside and beside <= row.faults.keys() and is_heading(row):
         return "is merged across all columns: a heading"
-    if not beside or any(map(str.isnumeric, number)) or any(any(map(str.isalpha, row.cells[at])) for at in beside):
+    if not beside or any(any(map(str.isalpha, row.cells[at])) for at in beside):
+        return ""
+    if _SUM.match(number):
+        return "has nothing but numbers beside it: a sum"
+    if any(map(str.isnumeric, number)):
         return ""
     return "has no figure in it and nothing but numbers beside it: a heading, or a sum"

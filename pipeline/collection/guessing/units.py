@@ -1,0 +1,139 @@
+"""The unit of a column: as its head names it, "Höhe in cm", "Maße (H x B x T in mm)", or as its numbers look."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from statistics import median
+
+from pipeline.collection.dimensions.lexicon import units
+from pipeline.collection.sources.measurement_terms import unit_of
+
+_OPEN, _CLOSE = "([（［", ")]）］"
+
+USUAL_MM = 150
+"""Median of whole numbers from which lengths are taken to be in millimetres: half of all objects are no metre and a
+half."""
+
+USUAL_M = 1.5
+"""Median of lengths up to which they may be in metres."""
+
+FEWEST = 5
+"""Numbers in eighths or sixteenths from which a column is taken to be in inches."""
+
+_TENTHS = re.compile(r"\d*[.,][1-46-9]")
+_HUNDREDTHS = re.compile(r"\d[.,]\d{2,3}")
+_SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
+
+_NAMED = re.compile(
+    rf"(?P<before>^|[\s_,;:/{re.escape(_OPEN)}]+)"
+    r"(?P<by>(?:in|en|em|i|w|v|ve|в|у|σε)\s+)?"
+    r"(?P<word>[^\W\d_]+|[\"″”])\.?"
+    rf"(?=\s*(?P<after>$|[,;:{re.escape(_OPEN + _CLOSE)}]))",
+    re.IGNORECASE,
+)
+"""A word that may be a unit, and what stands on both sides of it."""
+
+_PARTS = frozenset({"foot", "fuß", "fuss", "pied", "pieds", "pie", "pies", "piede", "piedi", "pés", "livre", "livres"})
+"""Units that heads name something else by: the diameter of the foot, the title of the book."""
+
+_WORDS = frozenset({"m", "g", "in"})
+"""Units that are words or letters of an order too: not before a bracket or a comma, nor behind other words in one."""
+
+_ENDS = frozenset({"mm", "cm", "m", "in", "ft", "kg", "g", "gr", "lb", "lbs", "oz"})
+"""What is a unit at the end of a head, of all short Latin words."""
+
+_EMPTY = re.compile(rf"[{re.escape(_OPEN)}][\s,;:]*[{re.escape(_CLOSE)}]")
+_LOOSE = re.compile(rf"[\s,;:]+(?=[{re.escape(_CLOSE)}])|(?<=[{re.escape(_OPEN)}])[\s,;:]+")
+
+
+def told_unit(name: str) -> tuple[str, str | None]:
+    """Return the head of a column without the unit that it names, and that unit.
+
+    Parameters
+    ----------
+    name : str
+        As it stands.
+
+    Returns
+    -------
+    (str, str or None)
+        None where it names none, or nothing but that.
+    """
+    found = [one for one in _NAMED.finditer(name) if _is_unit(name, one)]
+    for able in _PLACES:
+        for one in found:
+            rest = _LOOSE.sub("", _EMPTY.sub(" ", f"{_before(name, one)} {name[one.end() :]}")).strip()
+            if able(one) and rest:
+                return rest, unit_of(one["word"])
+    return name, None
+
+
+def _before(name: str, found: re.Match[str]) -> str:
+    """Return what stands before a unit, its opening bracket too where that holds more."""
+    return name[: found.end("before")].rstrip(" _,;:/\n\t")
+
+
+def _is_unit(name: str, found: re.Match[str]) -> bool:
+    word = found["word"].casefold()
+    unit = None if word in _PARTS else unit_of(word)
+    # "H x L x g": the letter of a side.
+    ordered = re.search(r"[x×]\s*$", name[: found.start("word")], re.IGNORECASE)
+    return unit is not None and units()[unit].kind in ("length", "mass") and not (ordered and not found["by"])
+
+
+def _by_word(found: re.Match[str]) -> bool:
+    return bool(found["by"])
+
+
+def _enclosed(found: re.Match[str]) -> bool:
+    """Whether it ends what stands in brackets, "(H x B x T mm)": a word or a letter must be alone there."""
+    if found["after"] not in _CLOSE or not found["after"] or "/" in found["before"]:
+        return False
+    return found["word"].casefold() not in _WORDS or found["before"].rstrip()[-1:] in tuple(f"{_OPEN},;")
+
+
+def _at_end(found: re.Match[str]) -> bool:
+    word = found["word"].casefold()
+    return not found["after"] and found["before"] != "" and (len(word) > 3 or not word.isascii() or word in _ENDS)
+
+
+def _before_brackets(found: re.Match[str]) -> bool:
+    """Whether an order or the like follows: "Maße cm (H x B x T)", "(cm, H x B x T)"."""
+    return bool(found["after"]) and found["after"] not in _CLOSE and found["word"].casefold() not in _WORDS
+
+
+_PLACES: tuple[Callable[[re.Match[str]], bool], ...] = (_by_word, _enclosed, _at_end, _before_brackets)
+"""Where a unit may stand, the surest first."""
+
+
+def usual_unit(numbers: Sequence[str]) -> tuple[str, str]:
+    """Return the unit that lengths are rather in where nothing tells it, and why.
+
+    Parameters
+    ----------
+    numbers : sequence of str
+        As written.
+
+    Returns
+    -------
+    (str, str)
+        Such as ("mm", "millimetres are taken, for they are large and whole").
+    """
+    sixteenths = sum(bool(_SIXTEENTHS.fullmatch(n)) for n in numbers)
+    tenths = sum(bool(_TENTHS.fullmatch(n)) for n in numbers)
+    whole = sum(n.isdecimal() for n in numbers)
+    if sixteenths >= FEWEST and sixteenths > 3 * tenths:
+        return "in", "inches are taken, for they have eighths and sixteenths"
+    if numbers and whole > 0.98 * len(numbers) and median(float(n.replace(",", ".")) for n in numbers) >= USUAL_MM:
+        return "mm", "millimetres are taken, for they are large and whole"
+    if _in_metres(numbers):
+        return "m", "metres are taken, for most are small and go to the centimetre"
+    return "cm", "centimetres are taken"
+
+
+def _in_metres(numbers: Sequence[str]) -> bool:
+    """Whether lengths are rather metres: in centimetres hardly anybody writes hundredths, 0.83, of what is small."""
+    fine = sum(bool(_HUNDREDTHS.fullmatch(number)) for number in numbers)
+    small = median(float(number.replace(",", ".")) for number in numbers) < USUAL_M if numbers else False
+    return len(numbers) >= FEWEST and fine >= 0.6 * len(numbers) and small

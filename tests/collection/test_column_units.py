@@ -1,0 +1,111 @@
+"""Units of columns: as their heads name them, and as their numbers look where nothing does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from pipeline.collection.guess import guess
+from pipeline.collection.guessing.names import unit_in
+from pipeline.collection.guessing.units import usual_unit
+from pipeline.collection.reading import read_items
+
+HEADS = [
+    ("Höhe in cm", "Höhe", "cm"),
+    ("Maße (H x B x T in mm)", "Maße (H x B x T)", "mm"),
+    ("Maße (HxBxT mm)", "Maße (HxBxT)", "mm"),
+    ("Abmessungen in cm (H x B x T)", "Abmessungen (H x B x T)", "cm"),
+    ("Maße cm (HxBxT)", "Maße (HxBxT)", "cm"),
+    ("Dimensions (cm, HxWxD)", "Dimensions (HxWxD)", "cm"),
+    ("Dimensions H x W x D (in)", "Dimensions H x W x D", "in"),
+    ("Height (with frame, in)", "Height (with frame)", "in"),
+    ("Dimensiuni (Î x L x g cm)", "Dimensiuni (Î x L x g)", "cm"),
+    ("Mål i cm", "Mål", "cm"),
+    ("Wymiary w mm", "Wymiary", "mm"),
+    ("Размер (в см)", "Размер", "cm"),
+    ("Ύψος (εκ.)", "Ύψος", "cm"),
+    ("高度（厘米）", "高度", "cm"),
+    ("寸法(cm)", "寸法", "cm"),
+    ("HEIGHT_IN", "HEIGHT", "in"),
+    ("Weight [lbs]", "Weight", "lb"),
+    ("Gewicht in Gramm", "Gewicht", "g"),
+    ('Height (")', "Height", "in"),
+]
+
+NO_UNITS = [
+    "Diameter (foot)",  # of the foot of a vase
+    "Durchmesser (Fuß)",
+    "Dimensions (L x l x g)",  # grosime, the thickness
+    "Dimensions (cm/in)",
+    "Title (in English)",
+    "Stored in (room)",
+    "cm",
+    "Größe",
+]
+
+
+@pytest.mark.parametrize(("head", "rest", "unit"), HEADS)
+def test_the_unit_of_a_head_is_found_wherever_it_stands(head: str, rest: str, unit: str) -> None:
+    found, told = unit_in(head)
+    assert (" ".join(found.split()), told) == (rest, unit)
+
+
+@pytest.mark.parametrize("head", NO_UNITS)
+def test_what_only_looks_like_a_unit_is_none(head: str) -> None:
+    assert unit_in(head) == (head, None)
+
+
+def _heights(tmp_path: Path, head: str, cells: list[str]) -> tuple[list[float | None], list[str]]:
+    path = tmp_path / "list.csv"
+    rows = [f"A {at};Vase;Saal {at % 2};{cell}" for at, cell in enumerate(cells)]
+    path.write_text("\n".join([f"Inventarnummer;Bezeichnung;Raum;{head}", *rows]), encoding="utf-8")
+    found = guess(path)
+    items = read_items(path, found.mapping).items
+    return [item.height_m for item in items], [*found.doubts, *(question.text for question in found.questions)]
+
+
+@pytest.mark.parametrize("head", ["Maße (H x B x T in mm)", "Abmessungen in mm (HxBxT)", "Maße HxBxT [mm]"])
+def test_texts_without_a_unit_have_that_of_the_head(head: str, tmp_path: Path) -> None:
+    heights, _ = _heights(tmp_path, head, ["430 x 210 x 210", "62 x 41 x 30", "1250 x 300 x 300"])
+    assert heights == pytest.approx([0.43, 0.062, 1.25])
+
+
+@pytest.mark.parametrize(
+    ("cells", "metres"),
+    [(["43 x 21 x 21", "62,5 x 41 x 30"], [0.43, 0.625]), (["430 x 210 x 200", "625 x 410 x 300"], [0.43, 0.625])],
+)
+def test_where_neither_head_nor_text_names_a_unit_one_is_taken_and_asked(
+    cells: list[str], metres: list[float], tmp_path: Path
+) -> None:
+    heights, said = _heights(tmp_path, "Maße", cells)
+    assert heights == pytest.approx(metres)
+    assert any(one.startswith("no unit is told for 'Maße'") for one in said)
+    assert "in which unit are 'Maße'?" in said
+
+
+def test_texts_without_a_unit_beside_several_are_left_and_counted(tmp_path: Path) -> None:
+    heights, said = _heights(tmp_path, "Maße", ["H 43 cm", "H 1,2 m", "H 320 mm", "65 x 170 x 55"])
+    assert heights == pytest.approx([0.43, 1.2, 0.32, None])
+    assert any(one.startswith("1 text of sizes without a unit: not read") for one in said)
+
+
+def test_numbers_tell_units_by_how_they_look() -> None:
+    assert usual_unit(["12.5", "30", "41.2"])[0] == "cm"
+    assert usual_unit(["125", "300", "412"])[0] == "mm"
+    assert usual_unit(["0.85", "1.20", "0.42", "1.05", "0.66"])[0] == "m"
+    assert usual_unit(["4.125", "7.375", "2.5625", "3.875", "9.625"])[0] == "in"
+    assert usual_unit([])[0] == "cm"
+
+
+@pytest.mark.parametrize("last", ["Σύνολο: 5 αντικείμενα", "Total 168", "合計 5", "Objekte: 5"])
+def test_a_sum_below_a_list_is_no_object(last: str, tmp_path: Path) -> None:
+    path = tmp_path / "list.csv"
+    rows = [f"A {at};Vase;Saal 1;{20 + at} cm" for at in range(5)]
+    path.write_text(
+        "\n".join(["Inventarnummer;Bezeichnung;Raum;Höhe", *rows, f"{last};;;", "B-7;;;"]), encoding="utf-8"
+    )
+    read = read_items(path, guess(path).mapping)
+    assert [item.object_number for item in read.items] == ["A 0", "A 1", "A 2", "A 3", "A 4", "B-7"]
+    assert len(read.rejected) == 1
+    assert "a sum" in read.rejected[0].message
