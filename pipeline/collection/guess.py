@@ -377,9 +377,12 @@ def _cases_in_places(fields: tomlkit.items.Table, places: Sequence[Column], told
         fields["gallery"]["cases"] = True
         text, place = next((one for one in apart if one[0] != one[1].room), apart[0])
         room, rest = place.room[:80], (place.case or place.displayed)[:80]
+        how = (
+            f"the gallery is {room!r}, the rest {rest!r}" if rest != room else "both the gallery and the case are that"
+        )
         told.sure.append(
             f"{len(apart)} of {len(texts)} places name a case, a plinth, a shelf or how things are held: of "
-            f"{text[:80]!r} the gallery is {room!r}, the rest {rest!r}; --choose case=- leaves places whole"
+            f"{text[:80]!r} {how}; --choose case=- leaves places whole"
         )
 
 

@@ -9,8 +9,17 @@ from pipeline.tables.held_rows import CASES, told_by, words_for
 from pipeline.tables.rows import any_of
 
 _SEPARATOR = re.compile(r"\s*[,;/>|]\s*|:\s+|\s+[-–—]\s+")
+_ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
 _SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS."""
+
+
+_ROOM = re.compile(
+    r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
+    r"|salon|sala|salone|galleria|galería|galeria|zaal|\w*sal|terem|αίθουσα|salonu|зал)(?!\w)",
+    re.IGNORECASE,
+)
+"""A room that is named without a number or a mark behind it: "Fossil room Case 2"."""
 
 
 class NamedPlace(NamedTuple):
@@ -29,9 +38,12 @@ def parted(text: str) -> NamedPlace:
     Parameters
     ----------
     text : str
-        As the museum writes it: "Gallery 1, case 3", "Atrium, suspended from the ceiling". One that names a case and no
-        room, "Vitrine 3", is both.
+        As the museum writes it: "Gallery 1, case 3", "Atrium, suspended from the ceiling", "Hall (hung)". One
+        that names a case and no room, "Vitrine 3", is both.
     """
+    enclosed = _ENCLOSED.fullmatch(text)
+    if enclosed and _tells(enclosed[2]):
+        return NamedPlace(enclosed[1], displayed=enclosed[2])
     ends = [found.span() for found in _SEPARATOR.finditer(text)]
     spans = list(zip((0, *(end for _, end in ends)), (*(start for start, _ in ends), len(text)), strict=True))
     whole, numbered, inside = _patterns()
@@ -44,6 +56,9 @@ def parted(text: str) -> NamedPlace:
             # "Case 3, Gallery 1": the other way round.
             room = cases.index(False)
             return NamedPlace(text[spans[room][0] :], text[: spans[room - 1][1]])
+        found = inside.search(text) if len(spans) == 1 else None
+        if found and _ROOM.search(text[: found.start()]):
+            return NamedPlace(text[: found.start()].rstrip(), text[found.start() :])
         return NamedPlace(text, text if len(spans) > 1 or numbered.match(text) else "")
     held = next((at for at, (start, end) in enumerate(spans) if at and _tells(text[start:end])), 0)
     if held:

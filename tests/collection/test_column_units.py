@@ -95,7 +95,27 @@ def test_numbers_tell_units_by_how_they_look() -> None:
     assert usual_unit(["125", "300", "412"])[0] == "mm"
     assert usual_unit(["0.85", "1.20", "0.42", "1.05", "0.66"])[0] == "m"
     assert usual_unit(["4.125", "7.375", "2.5625", "3.875", "9.625"])[0] == "in"
+    assert usual_unit(["22 1/2", "24", "20 3/4"])[0] == "in"
+    assert usual_unit(["22 1/2", "24", "12½"])[0] == "cm"  # a half is written of centimetres too
     assert usual_unit([])[0] == "cm"
+
+
+LIST = """Catalog #,Object,Home Location,Cur Location,H,W,D,Wt
+N-1,Buffalo skull,Storage A,Main Hall,22 1/2,24,16,
+N-2,Grizzly bear mount,Storage A,Main Hall,96,48,40,800
+N-3,Trilobite slab,Storage B,Fossil room Case 2,12.5,18.25,2,35
+N-4,Barn owl in glass dome,Storage B,Main Hall,20 3/4,12,12,
+"""
+
+
+def test_a_list_of_a_natural_history_museum_in_its_short_words(tmp_path: Path) -> None:
+    """Where things are now, not where they are at home; fractions are inches, and weights beside inches pounds."""
+    path = tmp_path / "list.csv"
+    path.write_text(LIST, encoding="utf-8")
+    items = read_items(path, guess(path).mapping).items
+    assert [(item.gallery, item.case) for item in items[1:3]] == [("Main Hall", ""), ("Fossil room", "Case 2")]
+    assert [item.height_m for item in items] == pytest.approx([0.5715, 2.4384, 0.3175, 0.52705])
+    assert [item.mass_kg for item in items] == pytest.approx([None, 362.874, 15.8757, None], abs=1e-3)
 
 
 @pytest.mark.parametrize("last", ["Σύνολο: 5 αντικείμενα", "Total 168", "合計 5", "Objekte: 5"])

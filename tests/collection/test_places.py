@@ -24,7 +24,10 @@ from pipeline.records import Furniture, Origin, Support
      ("Salle 3 > Vitrine 12 > étagère 2", "Salle 3", "Vitrine 12 > étagère 2"), ("第2展厅展柜3", "第2展厅", "展柜3"),
      ("British Galleries, Room 58, Case 3", "British Galleries, Room 58", "Case 3"),
      ("Grosvenor Gallery: plinth", "Grosvenor Gallery", "plinth"), ("Case 3, Gallery 1", "Gallery 1", "Case 3"),
-     ("Gallery 207 - Display case A", "Gallery 207", "Display case A"), ("Vitrine 3", "Vitrine 3", "Vitrine 3")],
+     ("Gallery 207 - Display case A", "Gallery 207", "Display case A"), ("Vitrine 3", "Vitrine 3", "Vitrine 3"),
+     ("Fossil room Case 2", "Fossil room", "Case 2"), ("Wing B Case 4", "Wing B", "Case 4"),
+     ("Rittersaal Vitrine 4", "Rittersaal", "Vitrine 4"), ("Sala romana vetrina 3", "Sala romana", "vetrina 3"),
+     ("Wall case 3", "Wall case 3", "Wall case 3")],
 )  # fmt: skip
 def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
     assert parted(place) == (room, case, "")
@@ -33,7 +36,8 @@ def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
 @pytest.mark.parametrize(
     "place",
     ["", "Gallery 1", "Staircase", "Case Study House", "Bookcase Room", "The Shelf", "The Showcase", "Vitrine Gallery",
-     "Pedestal Hall", "Cabinet 3", "Kabinett 12", "G69/dc13", "Gallery 2, by the window", "Casement Hall, south"],
+     "Pedestal Hall", "Cabinet 3", "Kabinett 12", "G69/dc13", "Gallery 2, by the window", "Casement Hall, south",
+     "Main Hall (east)"],
 )  # fmt: skip
 def test_a_room_alone(place: str) -> None:
     assert parted(place) == (place, "", "")
@@ -43,7 +47,7 @@ def test_a_room_alone(place: str) -> None:
     ("place", "room", "displayed"),
     [("Engine Hall, suspended from ceiling", "Engine Hall", "suspended from ceiling"),
      ("Saal 4, an der Wand", "Saal 4", "an der Wand"), ("Gallery 2 - on floor", "Gallery 2", "on floor"),
-     ("Atrium; hung overhead", "Atrium", "hung overhead")],
+     ("Atrium; hung overhead", "Atrium", "hung overhead"), ("Main Hall (suspended)", "Main Hall", "suspended")],
 )  # fmt: skip
 def test_a_room_and_how_a_thing_is_held_there(place: str, room: str, displayed: str) -> None:
     assert parted(place) == (room, "", displayed)

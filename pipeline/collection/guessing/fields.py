@@ -12,7 +12,7 @@ from pipeline.collection.display_words import flag_of, says_away, says_flags, te
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import NUMBER, Column
 from pipeline.collection.guessing.names import TEXTS, bare, named, unit_in
-from pipeline.collection.guessing.units import usual_unit
+from pipeline.collection.guessing.units import FEET, usual_unit
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
@@ -216,7 +216,7 @@ class Fields:
             and (column.numeric or (column.measured and column.dimensional <= _NAMING))
             and not any(self._told_unit(name, column))
         }
-        unit = self._common_unit(untold) if untold else ""
+        unit = self._common_unit(untold) if untold else self._told_in_common(found)
         for name in MAPPABLE:
             column = found.get(name)
             if column is None:
@@ -378,10 +378,12 @@ class Fields:
                 return None
             unit = WRITTEN
         if unit is None and "kg" in units:
-            unit = "kg"
-            self.doubts.append(
-                f"column {column.name!r} tells no unit: kilograms are taken; --choose {name}.unit=g takes another"
+            unit, why = (
+                ("lb", "pounds are taken, as lengths are in inches")
+                if common in FEET
+                else ("kg", "kilograms are taken")
             )
+            self.doubts.append(f"column {column.name!r} tells no unit: {why}; --choose {name}.unit=g takes another")
             self.questions.append(Question(f"{name}.unit", f"in which unit is {column.name!r}?", tuple(units), unit))
         entry = tomlkit.table()
         if beside is None:
@@ -441,9 +443,14 @@ class Fields:
         same = {unit_of(text) for text in beside.distinct}
         return (same.pop(), None) if len(same) == 1 else (WRITTEN, beside)
 
+    def _told_in_common(self, found: Mapping[str, Column]) -> str:
+        """Return the unit that all columns of lengths tell; "" for none, or several."""
+        told = {self._told_unit(name, column)[0] for name, column in found.items() if "m" in units_of(name)}
+        return (told.pop() or "") if len(told) == 1 else ""
+
     def _common_unit(self, untold: Mapping[str, Column]) -> str:
         """Return the unit of the lengths that tell none, which one file has in common, and ask about it."""
-        numbers = [number for column in untold.values() for number in column.numbers]
+        numbers = [text for column in untold.values() for text in column.filled]
         return asked_unit([column.name for column in untold.values()], numbers, self.doubts, self.questions)
 
 

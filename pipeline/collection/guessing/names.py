@@ -30,9 +30,6 @@ DESCRIPTION, ARTIST = "description", "artist"
 LENGTH = "length_m"
 """The same of a length: it is the width, or else the depth, whichever has no column."""
 
-_INTERNAL = {"object_number": "identifier", "gallery": "home location"}
-"""The first of the names of object numbers that are a database's own, and of those of usual places."""
-
 _JOINED = re.compile(r"(\w{4,}?)(mm|cm|in|ft|kg|lb|lbs|oz)", re.IGNORECASE)
 """A name of one word that ends with a unit: "HEIGHTIN", "weightKg"."""
 _UNIT = {"inch": "in", "inches": "in", "lbs": "lb", "gr": "g"}
@@ -175,6 +172,7 @@ def _mappable(field: str) -> str:
 class _ColumnNames:
     field: Annotated[str, AfterValidator(_mappable)]
     names: Entries
+    internal: Entries
 
 
 @cache
@@ -182,10 +180,8 @@ def _names() -> dict[str, ColumnMeaning]:
     rows = checked(_ColumnNames, table("column_names"), "column_names.csv", named="field")
     found: dict[str, ColumnMeaning] = {}
     for row in rows:
-        internal = False
-        for rank, name in enumerate(row.names):
-            internal = internal or name == _INTERNAL.get(row.field)
-            found.setdefault(plain(name), ColumnMeaning(row.field, rank, internal))
+        for rank, name in enumerate((*row.names, *row.internal)):
+            found.setdefault(plain(name), ColumnMeaning(row.field, rank, rank >= len(row.names)))
     return found
 
 
@@ -208,7 +204,9 @@ def _singular(name: str) -> str:
 def plain(name: str) -> str:
     """Return a name as it is compared: no capitals, accents, marks and articles, "no" for every word for number."""
     bare = "".join(
-        c for c in normalize("NFKD", _ELIDED.sub(" ", _CAMEL.sub(" ", normalize("NFC", name)))) if not combining(c)
+        c
+        for c in normalize("NFKD", _ELIDED.sub(" ", _CAMEL.sub(" ", normalize("NFC", name.replace("#", " no ")))))
+        if not combining(c)
     )
     # NFKD takes the voicing marks off Japanese signs; they are put together again.
     # In capitals nobody can tell the two i of Turkish apart.

@@ -39,7 +39,7 @@ _SOME = 1000
 
 _SIDES = frozenset({"height", "width", "depth", "length", "diameter"})
 _JOINED = re.compile(r"[x×]", re.IGNORECASE)
-_NUMBER = re.compile(r"\d+(?:[.,]\d+)?", re.ASCII)
+_NUMBER = re.compile(r"(?:\d+\s+)?\d+/\d+|\d+(?:[.,]\d+)?[½¼¾⅛⅜⅝⅞]?", re.ASCII)
 
 
 def order_of(columns: Sequence[Column]) -> tuple[tuple[str, ...], str]:

@@ -21,6 +21,12 @@ USUAL_M = 1.5
 FEWEST = 5
 """Numbers in eighths or sixteenths from which a column is taken to be in inches."""
 
+FEET = frozenset({"in", "ft"})
+"""Units beside which weights are in pounds."""
+
+_FRACTION = re.compile(r"\d/(?:2|4|8|16|32|64)(?!\d)|[½¼¾⅛⅜⅝⅞]")
+_HALF = re.compile(r"1/2(?!\d)|½")
+_PLAIN = re.compile(r"\d+(?:[.,]\d+)?", re.ASCII)
 _TENTHS = re.compile(r"\d*[.,][1-46-9]")
 _HUNDREDTHS = re.compile(r"\d[.,]\d{2,3}")
 _SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
@@ -107,19 +113,24 @@ _PLACES: tuple[Callable[[re.Match[str]], bool], ...] = (_by_word, _enclosed, _at
 """Where a unit may stand, the surest first."""
 
 
-def usual_unit(numbers: Sequence[str]) -> tuple[str, str]:
+def usual_unit(texts: Sequence[str]) -> tuple[str, str]:
     """Return the unit that lengths are rather in where nothing tells it, and why.
 
     Parameters
     ----------
-    numbers : sequence of str
-        As written.
+    texts : sequence of str
+        Numbers as written, fractions among them; what is none says nothing.
 
     Returns
     -------
     (str, str)
         Such as ("mm", "millimetres are taken, for they are large and whole").
     """
+    numbers = [text for text in texts if _PLAIN.fullmatch(text)]
+    fractions = [text for text in texts if _FRACTION.search(text)]
+    # A half alone is written of centimetres too.
+    if len(fractions) >= FEWEST or not all(map(_HALF.search, fractions)):
+        return "in", "inches are taken, for they have fractions"
     sixteenths = sum(bool(_SIXTEENTHS.fullmatch(n)) for n in numbers)
     tenths = sum(bool(_TENTHS.fullmatch(n)) for n in numbers)
     whole = sum(n.isdecimal() for n in numbers)
