@@ -131,8 +131,6 @@ def heads_or_sums(row: Row, number: str, beside: Set[int]) -> str:
         return "is merged across all columns: a heading"
     if not beside or any(any(map(str.isalpha, row.cells[at])) for at in beside):
         return ""
-    if _SUM.match(number):
-        return "has nothing but numbers beside it: a sum"
-    if any(map(str.isnumeric, number)):
-        return ""
-    return "has no figure in it and nothing but numbers beside it: a heading, or a sum"
+    if not any(map(str.isnumeric, number)):
+        return "has no figure in it and nothing but numbers beside it: a heading, or a sum"
+    return "has nothing but numbers beside it: a heading, or a sum" if _SUM.match(number) else ""
