@@ -79,7 +79,7 @@ def _patterns() -> tuple[re.Pattern[str], re.Pattern[str], re.Pattern[str]]:
     kinds = (Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
     plain = [word for kind in kinds for word in words_for(kind) if "*" not in word]
     word, numbered = f"(?:{any_of(plain).pattern})", f"(?:{any_of([*plain, *CASES]).pattern})"
-    counted = rf"{numbered}\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}"
+    counted = rf"{numbered}\.?\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}"
     before = r"\s*(?:[^\W\d_]+[\s-]+){0,2}"
     return (
         re.compile(rf"{before}(?:{counted}|{word}|case)\s*$", re.IGNORECASE),

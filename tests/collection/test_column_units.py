@@ -27,6 +27,10 @@ HEADS = [
     ("Ύψος (εκ.)", "Ύψος", "cm"),
     ("高度（厘米）", "高度", "cm"),
     ("寸法(cm)", "寸法", "cm"),
+    ("寸法（縦×横×高cm）", "寸法（縦×横×高）", "cm"),
+    ("高さcm", "高さ", "cm"),
+    ("Rozměry (v × š × h v mm)", "Rozměry (v × š × h)", "mm"),
+    ("Mål (HxBxD) cm", "Mål (HxBxD)", "cm"),
     ("HEIGHT_IN", "HEIGHT", "in"),
     ("Weight [lbs]", "Weight", "lb"),
     ("Gewicht in Gramm", "Gewicht", "g"),
@@ -65,9 +69,11 @@ def _heights(tmp_path: Path, head: str, cells: list[str]) -> tuple[list[float | 
     return [item.height_m for item in items], [*found.doubts, *(question.text for question in found.questions)]
 
 
-@pytest.mark.parametrize("head", ["Maße (H x B x T in mm)", "Abmessungen in mm (HxBxT)", "Maße HxBxT [mm]"])
+@pytest.mark.parametrize(
+    "head", ["Rozměry (v × š × h v mm)", "Maße (H x B x T in mm)", "Abmessungen in mm (HxBxT)", "Maße HxBxT [mm]"]
+)
 def test_texts_without_a_unit_have_that_of_the_head(head: str, tmp_path: Path) -> None:
-    heights, _ = _heights(tmp_path, head, ["430 x 210 x 210", "62 x 41 x 30", "1250 x 300 x 300"])
+    heights, _ = _heights(tmp_path, head, ["430 × 210 × 210", "62 × 41 × 30", "1250 × 300 × 300"])
     assert heights == pytest.approx([0.43, 0.062, 1.25])
 
 

@@ -27,7 +27,7 @@ from pipeline.records import Furniture, Origin, Support
      ("Gallery 207 - Display case A", "Gallery 207", "Display case A"), ("Vitrine 3", "Vitrine 3", "Vitrine 3"),
      ("Fossil room Case 2", "Fossil room", "Case 2"), ("Wing B Case 4", "Wing B", "Case 4"),
      ("Rittersaal Vitrine 4", "Rittersaal", "Vitrine 4"), ("Sala romana vetrina 3", "Sala romana", "vetrina 3"),
-     ("Wall case 3", "Wall case 3", "Wall case 3")],
+     ("Wall case 3", "Wall case 3", "Wall case 3"), ("Sala 2 / Vit. 3", "Sala 2", "Vit. 3")],
 )  # fmt: skip
 def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
     assert parted(place) == (room, case, "")

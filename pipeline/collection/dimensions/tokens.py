@@ -63,6 +63,8 @@ _SAME_LENGTH = (
     (re.compile(rf"(?i)(?<=[^\W\d_]),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),  # Height, max.: 31 cm
     (re.compile(rf"(?i)(?<=[^\W\d_]\.),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),
     (re.compile(r"(?:(?<=\d/\d)|(?<=\d/\d\d)) / (?=\d)"), " x "),  # 5 1/2 / 3 1/4 in.
+    # 185:128:54 cm, 24,5 : 31 cm; 1:10 is a scale.
+    (re.compile(r"(?:(?<=\d)(?<!\b1)|(?<=\d )(?<!\b1 )):(?= ?\d+(?:[.,]\d+)?(?: ?: ?\d+(?:[.,]\d+)?)? ?[cm]m\b)"), "x"),
     (re.compile(r"(?i)\b(?:por|sur|per)(?=\s+\d)"), "x  "),  # 30 cm de alto por 20 de ancho
     (re.compile(r"(?i)(?:(?<=\bde )large\b|\blarge(?=\s+de\s+\d))"), "larg "),
     (re.compile(r"(?i)\bhors[ -]tout"), "horstout "),

@@ -33,7 +33,7 @@ from pipeline.errors import InputError
 NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
-_SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d", re.DOTALL)
+_SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d|\d\s*[×*]\s*\d", re.DOTALL)
 _BOTH = 0.05
 """How many objects with length and depth there may be for each that has a length alone (judgement)."""
 

@@ -58,7 +58,7 @@ _SIDE = re.compile(r"([^(（\[]+)[(（\[]([^)）\]]+)[)）\]]")
 """The name of a column that says in brackets what of something it is."""
 LEGEND = re.compile(
     r"(?<![^\W_])(?:(?:[^\W\d_x×]{1,2}\.?\s*[x×]\s*){1,2}[^\W\d_x×]{1,2}(?![^\W_])"
-    r"|(?:[^\W\d_]{3,}\.?\s+[x×]\s+){1,2}[^\W\d_]{3,})",
+    r"|(?:[^\W\d_]+\.?(?:\s+x\s+|\s*×\s*)){1,2}[^\W\d_]+)",
     re.IGNORECASE,
 )
 """What the head of a column says of the order: L x B x H, alto x ancho x fondo."""
@@ -423,7 +423,7 @@ def _forms(name: str) -> Iterator[str]:
         yield plain(_GROUPED.sub("", path[-1]))
         yield plain(unit_in(_GROUPED.sub("", path[-1]))[0])
     # What stands in brackets may be a language.
-    outside = re.sub(r"[(\[].*?[)\]]", " ", name)
+    outside = re.sub(r"[(\[（［].*?[)\]）］]", " ", name)
     if outside.strip() and outside != name:
         yield plain(outside)
         yield plain(unit_in(outside)[0])

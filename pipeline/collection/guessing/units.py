@@ -10,6 +10,8 @@ from pipeline.collection.dimensions.lexicon import units
 from pipeline.collection.sources.measurement_terms import unit_of
 
 _OPEN, _CLOSE = "([（［", ")]）］"
+_SIGNS = r"\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af"
+"""Of Japanese, Chinese and Korean: no blank parts these from Latin letters."""
 
 USUAL_MM = 150
 """Median of whole numbers from which lengths are taken to be in millimetres: half of all objects are no metre and a
@@ -32,9 +34,9 @@ _HUNDREDTHS = re.compile(r"\d[.,]\d{2,3}")
 _SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
 
 _NAMED = re.compile(
-    rf"(?P<before>^|[\s_,;:/{re.escape(_OPEN)}]+)"
+    rf"(?P<before>^|[\s_,;:/{re.escape(_OPEN + _CLOSE)}]+|(?<=[{_SIGNS}]))"
     r"(?P<by>(?:in|en|em|i|w|v|ve|в|у|σε)\s+)?"
-    r"(?P<word>[^\W\d_]+|[\"″”])\.?"
+    rf"(?P<word>[^\W\d_{_SIGNS}]+|[{_SIGNS}]+|[\"″”])\.?"
     rf"(?=\s*(?P<after>$|[,;:{re.escape(_OPEN + _CLOSE)}]))",
     re.IGNORECASE,
 )
@@ -101,7 +103,7 @@ def _enclosed(found: re.Match[str]) -> bool:
 
 def _at_end(found: re.Match[str]) -> bool:
     word = found["word"].casefold()
-    return not found["after"] and found["before"] != "" and (len(word) > 3 or not word.isascii() or word in _ENDS)
+    return not found["after"] and found.start("word") > 0 and (len(word) > 3 or not word.isascii() or word in _ENDS)
 
 
 def _before_brackets(found: re.Match[str]) -> bool:
