@@ -45,7 +45,7 @@ from pipeline.collection.guessing.source import (
     workbook,
 )
 from pipeline.collection.guessing.taken import MOST_STORES, of_preset, said_of_stores
-from pipeline.collection.guessing.what import describing, in_place_of_title, named_by
+from pipeline.collection.guessing.what import describing, in_place_of_title, name_and_title, named_by
 from pipeline.collection.guessing.within import labels_within, parting, place_among
 from pipeline.collection.mapping import MAPPABLE, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
@@ -196,6 +196,13 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     found = _chosen(name, columns, able, told)
     headed = place_by_heading(found, columns) if "gallery" not in told.choices else ""
     told.doubts += [headed] * bool(headed)
+    named_twice = name_and_title(able, found, told.choices)
+    if named_twice is not None:
+        found["object_name"], found["title"] = named_twice
+        told.questions[:] = [question for question in told.questions if question.key != "object_name"]
+        told.sure.append(
+            f"{named_twice[0].name!r} names things and {named_twice[1].name!r} is their title: it has more words"
+        )
     naming = named_by(able, found, told.choices)
     described = naming is not None and naming is not found.get("title")
     about = None if naming is None or described or "title" in told.choices else describing(able, naming)

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from pipeline.collection.dimensions import choose, parse
 from pipeline.collection.guess import guess
-from pipeline.collection.guessing.names import unit_in
+from pipeline.collection.guessing.names import named, unit_in
 from pipeline.collection.guessing.units import usual_unit
 from pipeline.collection.reading import read_items
 
@@ -135,3 +136,71 @@ def test_a_sum_below_a_list_is_no_object(last: str, tmp_path: Path) -> None:
     assert [item.object_number for item in read.items] == ["A 0", "A 1", "A 2", "A 3", "A 4", "B-7"]
     assert len(read.rejected) == 1
     assert "a sum" in read.rejected[0].message
+
+
+def test_a_row_of_units_below_the_names_belongs_to_them(tmp_path: Path) -> None:
+    """As Italian offices hand lists over: names in two rows, units in a third; names cut short by a point."""
+    path = tmp_path / "lista.csv"
+    path.write_text(
+        "Inv.;Oggetto;Ubicazione;Misure;;;Peso\n;;;alt.;largh.;prof.;\n;;;mm;mm;mm;g\n"
+        "A.12;Vaso;Sala 1;345;220;210;2100\nS.4;Busto;Sala 2;750;580;300;140000\nS.5;Stele;Sala 2;1650;620;140;\n",
+        encoding="utf-8",
+    )
+    found = guess(path)
+    read = read_items(path, found.mapping)
+    assert [(item.height_m, item.width_m, item.depth_m, item.mass_kg) for item in read.items[:2]] == [
+        pytest.approx((0.345, 0.22, 0.21, 2.1)),
+        pytest.approx((0.75, 0.58, 0.3, 140.0)),
+    ]
+    assert not read.rejected
+    assert "3 rows name the columns together" in found.sure
+
+
+@pytest.mark.parametrize(
+    ("head", "field"), [("largh.", "width_m"), ("Lungh.", "length_m"), ("Diám.", "diameter_m"), ("Gew.", "mass_kg")]
+)
+def test_names_of_sides_that_a_point_cuts_short(head: str, field: str) -> None:
+    meaning = named(head)
+    assert meaning is not None
+    assert meaning.field == field
+
+
+@pytest.mark.parametrize("head", ["Dept.", "St.", "Auth.", "Largh"])
+def test_what_is_cut_short_of_other_names_is_no_side(head: str) -> None:
+    meaning = named(head)
+    assert meaning is None or meaning.field not in ("height_m", "width_m", "depth_m", "length_m", "mass_kg")
+
+
+def test_of_two_columns_of_names_the_longer_is_the_title(tmp_path: Path) -> None:
+    path = tmp_path / "primus.csv"
+    path.write_text(
+        "Föremålsnr;Sakord;Benämning;Placering;Mått\nNM.1;byrå;Gustaviansk byrå;Rum 4;H 84 B 110 Dj 52\n"
+        "NM.2;ljuskrona;Ljuskrona för 12 ljus;Rum 4;Höjd 115 Diam 90\n"
+        "NM.3;golvur;Moraklocka;Rum 2;H 2180 mm, B 520 mm\n",
+        encoding="utf-8",
+    )
+    found = guess(path)
+    items = read_items(path, found.mapping).items
+    assert [(item.object_name, item.title) for item in items[:2]] == [
+        ("byrå", "Gustaviansk byrå"),
+        ("ljuskrona", "Ljuskrona för 12 ljus"),
+    ]
+    # Most texts name no unit, and one does: it is asked about the others.
+    assert [item.height_m for item in items] == pytest.approx([0.84, 1.15, 2.18])
+    assert items[0].depth_m == pytest.approx(0.52)
+    assert any(question.key == "unit" for question in found.questions)
+
+
+@pytest.mark.parametrize(
+    ("text", "sides"),
+    [
+        ("185:128:54 cm", (1.85, 1.28, 0.54)),
+        ("24,5 : 31 cm", (0.245, 0.31, None)),
+        ("Maßstab 1:10, H 30 cm", (0.3, None, None)),
+        ("1:10 cm", (None, None, None)),
+    ],
+)
+def test_sizes_with_colons_between_them(text: str, sides: tuple[float | None, ...]) -> None:
+    chosen = choose(parse(text))
+    told = [one.value if one else None for one in (chosen.height, chosen.width, chosen.depth)]
+    assert told == pytest.approx(list(sides))

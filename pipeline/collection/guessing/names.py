@@ -63,6 +63,10 @@ LEGEND = re.compile(
 )
 """What the head of a column says of the order: L x B x H, alto x ancho x fondo."""
 _OTHER = re.compile(r"[^\w]+|_")
+_FEWEST = 3
+"""Letters of a name that a point cuts short."""
+_CUT_ELSEWISE = frozenset({"dept"})
+"""What is short for another word: the department."""
 _SHORT = 4
 """Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
 _LONG = 5
@@ -114,8 +118,9 @@ def is_length(name: str) -> bool:
 
 
 def is_side(name: str) -> bool:
-    """Whether the name of a column begins as those of sizes do: "measurement_girth"."""
-    return bool(_ABOUT.intersection(plain(name).split()[:1]))
+    """Whether the name of a column begins as those of sizes do, "measurement_girth", or stands below that of sizes."""
+    upper, between, _ = name.partition(BETWEEN)
+    return bool(_ABOUT.intersection(plain(name).split()[:1])) or bool(between and _says(upper) == TEXTS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,7 +303,18 @@ def named(name: str) -> ColumnMeaning | None:
             return found
     if plain(name) in CALLED:
         return ColumnMeaning("title", _WEAK)
-    return _within(name)
+    return _cut(name) or _within(name)
+
+
+def _cut(name: str) -> ColumnMeaning | None:
+    """Return the side, or the weight, whose name alone begins as one that a point cuts short: "largh.", "lungh."."""
+    word = bare(name)
+    form = plain(word)
+    if not word.endswith(".") or len(form) < _FEWEST or " " in form or form in _CUT_ELSEWISE:
+        return None
+    fields = {what.field for known, what in _names().items() if known.startswith(form) and " " not in known}
+    field = fields.pop() if len(fields) == 1 else ""
+    return ColumnMeaning(field, _WEAK) if field == LENGTH or units_of(field) else None
 
 
 def outright(name: str) -> bool:

@@ -6,14 +6,14 @@ import csv
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import islice
 from unicodedata import category
 
 from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
-from pipeline.collection.sources.heads import joined_heads
+from pipeline.collection.sources.heads import is_of_units, joined_heads
 from pipeline.tables import table
 
 LOOKED_AT = 40
@@ -222,7 +222,10 @@ def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
             if best is None or known > best.known:
                 best = Head(number, many, known)
     if best is not None and best.known > 1:
-        return best
+        at = next(at for at, (number, _) in enumerate(rows) if number == best.row) + best.rows
+        # "cm" and "kg" below the names.
+        more = at < len(rows) and rows[at][0] == best.row + best.rows and is_of_units(rows[at][1])
+        return replace(best, rows=best.rows + more)
     widths = [sum(bool(cell.strip()) for cell in cells) for _, cells in rows[:LOOKED_AT]]
     widest = max(widths, default=0)
     for (number, cells), width in zip(rows, widths, strict=False):

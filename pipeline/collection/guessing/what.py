@@ -28,11 +28,41 @@ _SOME = 200
 _FACE = 2
 """Sides that are measured of a picture."""
 
+_MORE = 1.25
+"""How many times more words titles have than names (judgement)."""
+
 _HEAD = re.compile(r"[,;:(\u2013]|\s-\s")
 """What ends the part of a title in which its thing is named."""
 
 _SHORT, _FEWEST, _MOST = 4, 2, 0.5
 """Words of such a part at the most, and how many titles and what share of them must name things (judgement)."""
+
+
+def name_and_title(
+    able: Mapping[str, Sequence[Column]], found: Mapping[str, Column], chosen: Mapping[str, str]
+) -> tuple[Column, Column] | None:
+    """Return which of two columns of names says what a thing is, "byrå", and which is its title, "Gustaviansk byrå".
+
+    Parameters
+    ----------
+    able, found, chosen
+        As of `named_by`.
+
+    Returns
+    -------
+    (Column, Column) or None
+        None where one column alone is of names, where there is a title, or where both are as long.
+    """
+    names = [one for one in able.get("object_name", ()) if one.filled][:2]
+    if len(names) < 2 or "title" in found or {"title", "object_name"} & chosen.keys():
+        return None
+    short, long = sorted(names, key=_words)
+    return (short, long) if _words(long) >= _MORE * _words(short) else None
+
+
+def _words(column: Column) -> float:
+    some = column.distinct[:_SOME]
+    return sum(len(text.split()) for text in some) / len(some)
 
 
 def named_by(

@@ -5,8 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
+from pipeline.collection.sources.measurement_terms import unit_of
+
 BETWEEN = " / "
 """What stands between an upper and a lower name."""
+
+
+def is_of_units(row: Sequence[str]) -> bool:
+    """Whether all that a row of a head says is units."""
+    said = [cell for cell in row if cell.strip()]
+    return bool(said) and all(unit_of(cell) for cell in said)
 
 
 def joined_heads(rows: Sequence[Sequence[str]]) -> list[str]:
@@ -28,7 +36,14 @@ def joined_heads(rows: Sequence[Sequence[str]]) -> list[str]:
     --------
     >>> joined_heads([["No.", "Size (cm)", "", "Place"], ["", "H", "W", ""]])
     ['No.', 'Size (cm) / H', 'Size (cm) / W', 'Place']
+    >>> joined_heads([["No.", "Height", "Weight"], ["", "cm", "kg"]])
+    ['No.', 'Height (cm)', 'Weight (kg)']
     """
+    *others, last = rows
+    if others and is_of_units(last):
+        named = joined_heads(others)
+        units = [*last, *[""] * (len(named) - len(last))]
+        return [f"{name} ({unit.strip()})" if unit.strip() else name for name, unit in zip(named, units, strict=False)]
     width = max(map(len, rows))
     cells = [[*(" ".join(cell.split()) for cell in row), *[""] * (width - len(row))] for row in rows]
     for upper, lower in pairwise(cells):
