@@ -204,3 +204,24 @@ def test_sizes_with_colons_between_them(text: str, sides: tuple[float | None, ..
     chosen = choose(parse(text))
     told = [one.value if one else None for one in (chosen.height, chosen.width, chosen.depth)]
     assert told == pytest.approx(list(sides))
+
+
+@pytest.mark.parametrize(
+    ("text", "sides"),
+    [
+        ("高6.9公分 橫23公分 縱16.4公分", (0.069, 0.23, 0.164)),
+        ("높이 6.9cm 가로 23cm 세로 16.4cm", (0.069, 0.23, 0.164)),
+        ("縱120公分 橫60公分", (1.2, 0.6, None)),
+    ],
+)
+def test_the_upright_side_is_the_depth_where_a_height_is_told(text: str, sides: tuple[float | None, ...]) -> None:
+    chosen = choose(parse(text))
+    told = [one.value if one else None for one in (chosen.height, chosen.width, chosen.depth)]
+    assert told == pytest.approx(list(sides))
+
+
+def test_names_of_linked_data_are_read_by_their_last_word() -> None:
+    for name, field in (("dcterms:title.@value", "title"), ("dcterms:identifier.@value", "object_number")):
+        meaning = named(name)
+        assert meaning is not None
+        assert meaning.field == field

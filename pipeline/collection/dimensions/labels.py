@@ -30,8 +30,8 @@ _EVIDENCE = 3
 """Weight of a word that only one language has, against that of one label that fits."""
 _ARTICLES = frozenset("aeicgsnfp")
 """Letters that are words or number components as well: in small letters they are labels only before a mark."""
-_UPRIGHT = "縦"
-"""Japanese: the height of a picture, but the depth of a box whose height (高) is given too."""
+_UPRIGHT = frozenset({"縦", "縱", "纵", "竪", "세로"})
+"""Japanese, Chinese, Korean: the height of a picture, but the depth of a box whose height (高) is given too."""
 _COMPONENTS = frozenset("ab")
 """A text that has both numbers its components with letters."""
 _NUMBERING = frozenset("abcdefg")
@@ -137,10 +137,10 @@ def _spoken(tokens: list[Token], text: str, places: list[int]) -> list[LabelLang
 def _upright(tokens: list[Token]) -> list[Token]:
     """Return the tokens with the upright side of a flat thing as its depth where the text gives a height as well."""
     heights = {token.word for token in tokens if token.meaning == ("dimension", "height")}
-    if _UPRIGHT not in heights or len(heights) == 1:
+    if not heights & _UPRIGHT or heights <= _UPRIGHT:
         return tokens
     depth = ("dimension", "depth")
-    return [token._replace(meaning=depth) if token.word == _UPRIGHT else token for token in tokens]
+    return [token._replace(meaning=depth) if token.word in _UPRIGHT else token for token in tokens]
 
 
 def _likeliest(labels: set[str], words: set[str]) -> list[LabelLanguage]:

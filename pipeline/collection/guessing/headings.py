@@ -10,6 +10,7 @@ from pipeline.collection.guessing.fields import tells_display
 from pipeline.collection.guessing.names import named, outright
 from pipeline.collection.sources.headings import HEADING, first_text, is_heading
 from pipeline.collection.sources.rows import Row
+from pipeline.collection.sources.sheets import SHEET
 
 FEWEST = 2
 """Headings from which a list is taken to have some; one alone may be a remark."""
@@ -44,7 +45,7 @@ def _names_place(text: str) -> bool:
 
 
 def place_by_heading(found: dict[str, Column], columns: Sequence[Column]) -> str:
-    """Take headings for the places of a list that has no column called so outright, and return what is to be said.
+    """Take headings, or names of sheets, for the places of a list that has no column called so outright, and say so.
 
     Parameters
     ----------
@@ -56,15 +57,22 @@ def place_by_heading(found: dict[str, Column], columns: Sequence[Column]) -> str
     Returns
     -------
     str
-        "" where there are no headings.
+        What is to be said; "" where there are none.
     """
-    heading = next((one for one in columns if one.name == HEADING and one.filled), None)
+    heading = next((one for one in columns if one.name in (HEADING, SHEET) and one.filled), None)
     if heading is None:
         return ""
-    said = f"{len(heading.distinct)} rows are headings of the rows below them, such as {heading.distinct[0][:80]!r}"
+    such = f"such as {heading.distinct[0][:80]!r}"
+    said = (
+        f"{len(heading.distinct)} sheets have names, {such}"
+        if heading.name == SHEET
+        else f"{len(heading.distinct)} rows are headings of the rows below them, {such}, and no objects"
+    )
     place = found.get("gallery")
-    if place is not None and outright(place.name):
-        return f"{said}, and no objects; places are taken from {place.name!r}: --choose gallery={HEADING} takes these"
+    named_so = heading.name == HEADING or 2 * sum(map(_names_place, heading.distinct)) >= len(heading.distinct)
+    if (place is not None and outright(place.name)) or not named_so:
+        taken = "the names are taken for no places" if place is None else f"places are taken from {place.name!r}"
+        return f"{said}; {taken}: --choose gallery={heading.name} takes these"
     found["gallery"] = heading
     if place is not None:
         found.setdefault("displayed" if tells_display(place) else "case", place)

@@ -51,6 +51,8 @@ _GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Col|Obj|Acc|Ide|Dim|Mea|Reg|Tax|Cla|S
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _TYPED = re.compile(r"(?<=[a-z])(?:Txt|Clb|Vrt|Num|Voc|Lnu)$")
 """Behind a name in MuseumPlus: of which type it is, "HeightNum", "ObjTechnicalTermClb"."""
+_VALUE = re.compile(r"\.@(?:value|none|[a-z]{2})$")
+"""Behind a name in linked data (JSON-LD): "dcterms:title.@value"."""
 _LABELS = re.compile(r"preferred labels?")
 _REFERENCE = re.compile(r"(?<=[a-z])(?:Ref|Grp|Tab)$")
 """Behind the name of what is told by another table."""
@@ -283,6 +285,7 @@ def named(name: str) -> ColumnMeaning | None:
     """
     if name in MAPPABLE:
         return ColumnMeaning(name, 0)
+    name = _VALUE.sub("", name)
     if any(_ELSEWHERE.intersection(plain(above).split()) for above in path_of(name)[:-1]):
         return None
     forms = [*_forms(name)]

@@ -213,6 +213,10 @@ def delimited_of(folder: Path, told: GuessNotes) -> dict[str, str]:
     return {"encoding": found["encoding"], "delimiter": found.get("delimiter", "\t")}
 
 
+_AGAIN = 0.1
+"""Share of the object numbers of a sheet that may stand on another one too."""
+
+
 def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: GuessNotes) -> None:
     """Say where the columns are named, where that is not the first row alone."""
     head = table_head(rows)
@@ -255,6 +259,7 @@ def workbook(path: Path, sheet: str | None, told: GuessNotes) -> tuple[dict[str,
         return read(sheet, told)
     best: tuple[tuple[bool, int, int], str, dict[str, Any], list[Column], GuessNotes] | None = None
     fault: CollectionError | None = None
+    read_so: dict[str, tuple[dict[str, Any], list[Column]]] = {}
     for title in there:
         quietly = GuessNotes(told.choices)
         try:
@@ -262,6 +267,7 @@ def workbook(path: Path, sheet: str | None, told: GuessNotes) -> tuple[dict[str,
         except CollectionError as problem:
             fault = fault or problem
             continue
+        read_so[title] = {key: what for key, what in source.items() if key != "sheet"}, columns
         fields = candidates(columns)
         likeness = "object_number" in fields, len(fields), max((len(c.values) for c in columns), default=0)
         if best is None or likeness > best[0]:
@@ -271,14 +277,42 @@ def workbook(path: Path, sheet: str | None, told: GuessNotes) -> tuple[dict[str,
             f"{path.name}: no sheet of the workbook is visible; show the one with the objects"
         )
     _, title, source, columns, quietly = best
-    others = ", ".join(repr(one) for one in there if one != title)
-    told.doubts.append(
-        f"of {len(there)} sheets {title!r} looks most like the inventory and is read; --table takes another: {others}"
-    )
+    alike = _alike(title, read_so)
+    others = ", ".join(repr(one) for one in there if one not in alike)
+    if len(alike) > 1:
+        source = {**read_so[title][0], "sheets": alike}
+        columns = columns_in(path, source)
+        told.sure.append(f"{len(alike)} sheets with the same columns are read one below another, from {alike[0]!r} on")
+        told.doubts += [f"nothing is read of the sheets {others}: --table takes one of them alone"] * bool(others)
+    else:
+        told.doubts.append(
+            f"of {len(there)} sheets {title!r} looks most like the inventory and is read; --table takes another: "
+            f"{others}"
+        )
     told.doubts += quietly.doubts
     told.questions += quietly.questions
     told.sure += quietly.sure
     return source, columns
+
+
+def _alike(title: str, read: Mapping[str, tuple[dict[str, Any], list[Column]]]) -> list[str]:
+    """Return the sheets that are lists of further objects in the columns of one, itself among them.
+
+    A copy, or the list of the year before, has its object numbers again and is none.
+    """
+    how, columns = read[title]
+    found = candidates(columns).get("object_number", ())
+    number = found[0].name if found else ""
+    names = sorted(column.name for column in columns)
+    seen: set[str] = set()
+    out = []
+    for other, (its, own) in sorted(read.items(), key=lambda one: one[0] != title):
+        numbers = {text for column in own if column.name == number for text in column.filled}
+        again = len(numbers & seen) > _AGAIN * len(numbers)
+        if its == how and sorted(column.name for column in own) == names and numbers and not again:
+            out.append(other)
+            seen |= numbers
+    return [one for one in read if one in out] if number else [title]
 
 
 def columns_in(path: Path, source: dict[str, Any]) -> list[Column]:

@@ -24,6 +24,7 @@ from pipeline.collection.sources.headings import MERGED
 from pipeline.collection.sources.heads import joined_heads
 from pipeline.collection.sources.opendocument import OpenBook, OpenCell, OpenPage
 from pipeline.collection.sources.rows import Row, TypedNumber, as_text
+from pipeline.collection.sources.sheets import one_below_another
 from pipeline.collection.sources.shown import is_moment, shown
 from pipeline.collection.sources.workbook import (
     COLUMN_LIMIT,
@@ -447,6 +448,12 @@ class XlsxSettings(HeadedSettings):
     sheet: Name | None = Field(
         default=None, description="The name of the sheet; needed where more than one is visible."
     )
+    sheets: tuple[Name, ...] = Field(
+        default=(),
+        max_length=500,
+        description="Sheets with the same columns that are read one below another, in place of sheet; the column "
+        '"sheet" has their names.',
+    )
 
 
 class Xlsx(FileSource):
@@ -474,12 +481,16 @@ class Xlsx(FileSource):
             First the header.
         """
         own = request.settings
-        return read_sheet(
-            binary,
-            file,
-            sheet=own.sheet,
-            header_row=own.header_row or 1,
-            header_rows=own.header_rows or 1,
-            key=request.key_column,
-            texts=request.texts,
-        )
+
+        def read(sheet: str | None) -> Iterator[Row]:
+            return read_sheet(
+                binary,
+                file,
+                sheet=sheet,
+                header_row=own.header_row or 1,
+                header_rows=own.header_rows or 1,
+                key=request.key_column,
+                texts=request.texts,
+            )
+
+        return one_below_another(read, own.sheets, file) if own.sheets else read(own.sheet)
