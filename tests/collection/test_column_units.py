@@ -225,3 +225,10 @@ def test_names_of_linked_data_are_read_by_their_last_word() -> None:
         meaning = named(name)
         assert meaning is not None
         assert meaning.field == field
+
+
+@pytest.mark.parametrize("head", ["Title / Description", "Description/Title", "Titel / Beschreibung"])
+def test_a_column_of_titles_and_descriptions_is_one_of_titles(head: str) -> None:
+    meaning = named(head)
+    assert meaning is not None
+    assert meaning.field == "title"

@@ -412,7 +412,10 @@ def _forms(name: str) -> Iterator[str]:
     # "Objeto/Documento", "Titel | title": what either half says; of two rows of a head the lower one first.
     halves = [half for half in re.split(r"[/|,;]| - |\n", unit_in(name)[0]) if half.strip()]
     if len(halves) > 1:
-        yield from map(plain, reversed(halves) if between else halves)
+        # "Title / Description" holds titles, perhaps long ones.
+        halves.sort(key=lambda half: _says(half) == DESCRIPTION)
+        titled = _says(halves[0]) not in (None, DESCRIPTION) and _says(halves[-1]) == DESCRIPTION
+        yield from map(plain, reversed(halves) if between and not titled else halves)
     # A path of names: what its last one says, "_currentLocation__onDisplay", "location.onView".
     path = path_of(name)
     if path[-1] != name:
