@@ -1,22 +1,26 @@
-"""How a thing is held that lies in a case or cannot stand by itself, and the numbers that its models need of that.
+"""How a thing is held: in a case or by a mount, and by what else its record says of display, furniture and isolator.
 
 A coin lies on its largest face; a mask is held by a mount of which hardly any record says how it grips.  Either is
 stated by a house rule, or shown by what the record says of its support, or taken as is usual (tables/mounts.csv).
 """
 
+import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from math import cos, radians, sin
+from textwrap import shorten
 
-from pipeline.analysis.house.effect import HouseEffect
-from pipeline.analysis.house.matching import MOUNTED_BY
+from pipeline.analysis.house.matching import MOUNTED_BY, HouseEffect
 from pipeline.analysis.section import share_of
 from pipeline.analysis.sizes import SIZES, Sizes, sizes_known
-from pipeline.records import Estimate, Item, Mount, Origin, Support
+from pipeline.records import Estimate, Furniture, Item, Mount, Origin, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
-from pipeline.tables.held_rows import told_by
+from pipeline.tables.held_rows import CASES, told_by, words_for
 from pipeline.tables.mount_rows import MountRow, mount_rows
+from pipeline.tables.rows import any_of
+from pipeline.tables.surface_rows import surfaces_in
 
 BULKY, LAID = 0.35, 0.2
 """Smallest over largest size, and largest size [m], from which on a thing stands rather than lies: judgement."""
@@ -188,3 +192,133 @@ def _leaning(
         "half_width": sizes.spread(Estimate.assumed(wide, least, most, "m", note, source), (long,)),
         "cg_height": sizes.spread(cg, (long,)),
     }
+
+
+SLENDEREST = 9.0
+"""Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
+
+_QUOTED = 80
+"""Characters of the museum's words that a note repeats."""
+
+_ABOVE = (Support.HUNG, Support.SUSPENDED)
+
+_TO_STAND_ON = (Furniture.FLOOR, Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
+
+_IN_CASES = (Furniture.SHOWCASE, Furniture.SHELF)
+
+
+def as_displayed(item: Item) -> Item:
+    """Return a record with what its words for how it is displayed tell, where it does not name that.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    """
+    if not item.displayed.strip():
+        return item
+    told = told_by(item.displayed)
+    # Of what is recorded to hang or to stand the words for the other are about something else.
+    stands = item.support is not None and item.support not in _ABOVE
+    return replace(
+        item,
+        support=item.support or (None if item.hanging is not None else told.support),
+        hanging=item.hanging or (None if stands else told.hanging),
+        furniture=item.furniture or told.furniture,
+        furniture_anchorage=item.furniture_anchorage or told.anchorage,
+        surface_material=item.surface_material or " and ".join(surfaces_in(item.displayed)),
+    )
+
+
+def held_as_displayed(item: Item, support: Support) -> bool:
+    """Say whether the words for its display alone tell that a thing is held by a brace, clips, ties or the like.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    support : Support
+        How it is taken to be held.
+    """
+    return support is Support.FASTENED and told_by(item.displayed).mount is Mount.SECURED
+
+
+def display_note(item: Item, support: Support) -> tuple[str, ...]:
+    """Return what the words for its display say of how a thing is held, as the beginning of its notes; () for nothing.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    support : Support
+        How it is taken to be held.
+    """
+    if told_by(item.displayed).support is not support:
+        return ()
+    said = say.HELD_AS_DISPLAYED if held_as_displayed(item, support) else say.DISPLAYED
+    words = shorten(item.displayed.replace(";", ","), _QUOTED, placeholder="...")
+    return (said(support=support.value, words=words),)
+
+
+def as_told(item: Item, row: ObjectClass) -> Item:
+    """Return a record with the support that the rest of it tells, where it does not name one.
+
+    What has a footing that was measured stands on it, whatever things of its class usually do, and so does what usually
+    hangs where its record names furniture to stand on.  What has an isolator stands on that.
+
+    Parameters
+    ----------
+    item : Item
+        The record, with what house rules say of its support.
+    row : ObjectClass
+        Its class.
+    """
+    if item.support is not None or item.hanging is not None:
+        return item
+    if item.isolator.strip():
+        return replace(item, support=Support.ISOLATED)
+    hangs = row.support in _ABOVE
+    stands = _footing(item) or (hangs and (item.furniture in _TO_STAND_ON or _names_case(item)))
+    usual = row.support is Support.FREESTANDING and WHEN_HELD not in row.models
+    if not stands or (usual and not too_slender(item)):
+        return item
+    return replace(item, support=Support.FREESTANDING)
+
+
+def in_case(item: Item, row: ObjectClass) -> bool:
+    """Say whether what hangs by its class is held by a mount in a case: its record names one.
+
+    A miniature, an icon or an enamelled plaque in "case 8" does not hang on the wall of the room.
+
+    Parameters
+    ----------
+    item : Item
+        The record, with what house rules say of its support.
+    row : ObjectClass
+        Its class.
+    """
+    if item.support is not None or item.hanging is not None or row.support is not Support.HUNG or _footing(item):
+        return False
+    return item.furniture in _IN_CASES or (item.furniture is None and _names_case(item))
+
+
+def _footing(item: Item) -> bool:
+    measured = item.base_width_m or item.base_depth_m or item.contact_polygon
+    return bool(measured) or item.tilt_angle_deg is not None
+
+
+def _names_case(item: Item) -> bool:
+    return bool(item.case) and _case_words().search(item.case) is not None
+
+
+@cache
+def _case_words() -> re.Pattern[str]:
+    # In a field for cases a bare word is enough; elsewhere it may be of furniture that is shown.
+    return any_of([*CASES, "cabinet", *(word for kind in _IN_CASES for word in words_for(kind))])
+
+
+def too_slender(item: Item) -> float:
+    """Return how many times as high as deep a thing is that by that cannot stand by itself; else 0."""
+    plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d]
+    times = item.height_m / min(plan) if plan and item.height_m is not None else 0.0
+    return times if times > SLENDEREST else 0.0

@@ -13,7 +13,7 @@ from pipeline.collection.inventory import items_named
 from pipeline.desk.asking import Asked, DeskAnswer, page_number
 from pipeline.desk.entering import labels, rules_version
 from pipeline.desk.errands import ErrandEntry, entries
-from pipeline.desk.errors import NotThereError
+from pipeline.desk.guard import NotThereError
 from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.object_facts import ObjectFacts, cells, vocabulary
 from pipeline.desk.run_facts import SHOWN, ListedObject, RunFacts

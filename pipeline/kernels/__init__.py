@@ -17,7 +17,7 @@ import numpy as np
 from numba.core import event
 
 from pipeline.quantities import Array
-from pipeline.records.compiling import tell_of_compiling
+from pipeline.records.protocols import tell_of_compiling
 
 FIRST = np.int64(0)
 """An index to begin with: for a literal number or truth value as an argument numba compiles the callee once more."""

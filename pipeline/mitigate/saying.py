@@ -3,7 +3,7 @@
 import re
 from math import inf
 
-from pipeline.analysis.told import held_as_displayed
+from pipeline.analysis.mounts import held_as_displayed
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.adhesives import SLIGHT
 from pipeline.mitigate.measures.base import knows_section

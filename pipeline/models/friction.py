@@ -19,8 +19,8 @@ from pipeline.models.common import (
     lift_ratios,
     magnified,
     pushes,
+    shared,
 )
-from pipeline.models.sharing import shared
 from pipeline.quantities import Array, G
 from pipeline.records import Bounds, Columns, Excitation
 

@@ -47,12 +47,12 @@ from pipeline.models.common import (
     needs,
     unless_free,
 )
-from pipeline.models.doubt import doubt
 from pipeline.models.flips import (
     ALL,
     FLAGS,
     Integration,
     Rows,
+    doubt,
     flips,
     integrate,
 )
@@ -95,7 +95,7 @@ from pipeline.records import (
     Trials,
     Zone,
 )
-from pipeline.records import chart_words as on_chart
+from pipeline.records import picture as on_chart
 
 
 def uplift_ratios(motion: Excitation, body: Array) -> Array:

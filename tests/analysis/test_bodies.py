@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from pipeline.analysis.classify import classify
+from pipeline.analysis.masses import base_of
 from pipeline.analysis.scene_parameters import material_of
-from pipeline.analysis.usual import base_of
 from pipeline.records import Furniture, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables import table

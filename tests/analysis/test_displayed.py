@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.told import as_displayed
+from pipeline.analysis.mounts import as_displayed
 from pipeline.records import Anchorage, Furniture, Hanging, Item, Mount, Origin, Support
 from pipeline.tables.held_rows import HeldAs, told_by
 

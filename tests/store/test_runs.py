@@ -15,8 +15,7 @@ from pipeline.collection.database import open_database
 from pipeline.records import Assessment, Chart, Estimate, MeasurementRequest, Origin, Page, RunRecord, Spacing, Verdict
 from pipeline.store.codec import StoreError
 from pipeline.store.migrate import upgrade
-from pipeline.store.pages import damaged_pages, load_page
-from pipeline.store.pruning import remove_runs
+from pipeline.store.pages import damaged_pages, load_page, remove_runs
 from pipeline.store.results import anonymous, damaged, encode, keep
 from pipeline.store.runs import commit_run, latest_run_id, list_runs, load_head, load_run
 from pipeline.store.tables import PAGE, RESULT, RUN, RUN_CHART, RUN_MOTION, RUN_PAGE
