@@ -21,7 +21,7 @@ import pytest
 from filelock import FileLock
 from hypothesis import settings as trying
 
-from pipeline.execute.memory import RARELY
+from pipeline.execute.workers import RARELY
 from tests.soak import SOAK, examples
 from tests.warm import NIGHTLY
 

@@ -17,7 +17,7 @@ from pipeline import __version__
 from pipeline.cli import commands
 from pipeline.cli.console import Guarded
 from pipeline.cli.shared import Options, with_shared
-from pipeline.execute.memory import RARELY
+from pipeline.execute.workers import RARELY
 from pipeline.operations.event_log import note
 from pipeline.operations.stopping import Stopped, stoppable
 

@@ -21,7 +21,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from pipeline.kernels import flags, samples
+from pipeline.kernels import CONTACT_LOST, CUT, EVENT_CAP, SENSITIVE, UNRESOLVED, samples
 from pipeline.kernels.lanes import LANES
 from pipeline.kernels.quiet import block_maxima, largest_ratio
 from pipeline.quantities import Array, G
@@ -59,20 +59,19 @@ def remembered(of: Callable[[_Shaking], _Told]) -> Callable[[_Shaking], _Told]:
 NO_VERTICAL = "the motion has no vertical component: what that would lift or load is not in this"
 """Said of what the vertical shaking loads or unloads, under a motion without any."""
 
-SENSITIVE = flags.SENSITIVE
 NO_TILT = 16
 NO_HISTORY = 32
 BOUND = 64
 
 NOTES = {
-    flags.CONTACT_LOST: "contact lost (vertical acceleration below -g); flight and landing are not modelled",
-    flags.CUT: "still moving when the tail was cut",
-    flags.EVENT_CAP: "more impacts than are followed in one sample interval",
+    CONTACT_LOST: "contact lost (vertical acceleration below -g); flight and landing are not modelled",
+    CUT: "still moving when the tail was cut",
+    EVENT_CAP: "more impacts than are followed in one sample interval",
     SENSITIVE: "sensitive: 1 % of amplitude may change the outcome, or any change is magnified 1,000 times",
     NO_TILT: "no tilt reproduces an acceleration of 1 g or more",
     NO_HISTORY: "a closed-form screen, not a response",
     BOUND: "a guaranteed upper bound, not a response",
-    flags.UNRESOLVED: "too fast for the steps that are taken: not followed; an upper bound, or empty where it has none",
+    UNRESOLVED: "too fast for the steps that are taken: not followed; an upper bound, or empty where it has none",
 }
 """What each bit of a result's note means."""
 
@@ -163,7 +162,7 @@ def shaken(motion: Excitation) -> float:
 
 def contact_lost(motion: Excitation, size: int) -> Array:
     """Return the flag of lost contact (size,) where the vertical acceleration goes below -g, else 0."""
-    return np.full(size, float(flags.CONTACT_LOST) if np.min(motion.z) < -G else 0.0)
+    return np.full(size, float(CONTACT_LOST) if np.min(motion.z) < -G else 0.0)
 
 
 @remembered

@@ -32,12 +32,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.kernels import flags
+from pipeline.kernels import CONTACT_LOST, SENSITIVE
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.models.common import (
     N_,
     NO_VERTICAL,
-    SENSITIVE,
     broadcast,
     contact_lost,
     curve,
@@ -122,7 +121,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     run = _runs(body, broadcast(parameters, "initial_rotation"))
     uplift = uplift_ratios(motion, body)
     fine = run(motion, ALL, 2 * refine if estimate else refine)
-    note = fine[:, FLAGS].astype(np.int64) | np.where(np.isinf(uplift), flags.CONTACT_LOST, 0)
+    note = fine[:, FLAGS].astype(np.int64) | np.where(np.isinf(uplift), CONTACT_LOST, 0)
     error = np.full(uplift.size, np.nan)
     if estimate:
         coarse = run(motion, ALL, refine)

@@ -45,14 +45,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.kernels import SENSITIVE, UNRESOLVED
 from pipeline.kernels import standing_body as kernel
-from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.kernels.standing import standing_batch
 from pipeline.models.common import (
     NO_VERTICAL,
     ROUNDING,
-    SENSITIVE,
     SHIFT,
     Quiet,
     lift_ratios,

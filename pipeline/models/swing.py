@@ -29,8 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.errors import InputError
-from pipeline.kernels import samples
-from pipeline.kernels.flags import UNRESOLVED
+from pipeline.kernels import UNRESOLVED, samples
 from pipeline.kernels.pendulum import MOST_STEPS, pendulum_batch
 from pipeline.kernels.spherical import spherical_batch
 from pipeline.models.common import N_, NO_HISTORY, ROUNDING, broadcast, grid, magnified, needs, shaken, shared

@@ -43,8 +43,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.kernels import samples
-from pipeline.kernels.flags import SENSITIVE
+from pipeline.kernels import SENSITIVE, samples
 from pipeline.kernels.hung_plate import hung_plate_batch
 from pipeline.models.common import N_, NO_VERTICAL, broadcast, grid, lift_ratios, needs, shaken
 from pipeline.quantities import Array, G, Quantity

@@ -9,8 +9,8 @@ from threading import Thread
 from typing import Self
 
 from pipeline.analysis.model_runs import prepare
-from pipeline.execute.memory import give_back
 from pipeline.execute.pool import WorkerPool, cores, pool
+from pipeline.execute.workers import give_back
 from pipeline.kernels import is_kept
 from pipeline.models.standing import STANDING
 from pipeline.motions.synthesis import sine

@@ -12,10 +12,9 @@ from pipeline.quantities import LENGTHS
 from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES, SENTENCES
 from pipeline.records.picture import CHART_WORDS
-from pipeline.report.by_hand import inches
 from pipeline.report.language import _, local, parted, said
 from pipeline.report.text import bare
-from pipeline.report.units import Units
+from pipeline.report.units import Units, inches
 
 TABLES = tuple(
     f"{name}.csv"

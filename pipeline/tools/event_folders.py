@@ -15,7 +15,7 @@ from pipeline.event.reading import is_same
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Page
 from pipeline.report.files.event_files import ANSWER, BRIEF
-from pipeline.report.files.publish import LINK, PAGE
+from pipeline.report.files.manifest import LINK, PAGE
 from pipeline.report.text import slug
 from pipeline.resources import small_text
 from pipeline.store.codec import StoreError

@@ -17,10 +17,9 @@ from pipeline.errors import InputError, fault_words
 from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Decision, DecisionKind
-from pipeline.report.files.decisions_sheet import COLUMNS, DECISIONS, DECISIONS_SHEET
 from pipeline.report.files.marked_copy import CellFault, write_listed, write_marked
 from pipeline.report.files.sheet_cells import HEADER_ROW
-from pipeline.report.files.survey_sheet import sheet_title
+from pipeline.report.files.survey_sheet import COLUMNS, DECISIONS, DECISIONS_SHEET, sheet_title
 from pipeline.store.decisions import read_decisions
 from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.house_answers import add_rules, rules_of

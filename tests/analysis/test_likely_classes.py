@@ -42,7 +42,7 @@ from pipeline.records import (
     Verdict,
 )
 from pipeline.report.pages.chances import chance_view
-from pipeline.report.pages.ranking import state_of
+from pipeline.report.pages.tallies import state_of
 from pipeline.report.pages.views import State
 
 MANY = Sampling(4096, 2.0)
