@@ -2,7 +2,7 @@
 
 import json
 import zlib
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -12,7 +12,7 @@ from sqlalchemy import Connection, Engine, delete, insert, select, update
 from pipeline.analysis.faults import with_fault
 from pipeline.analysis.survey import in_order
 from pipeline.collection.object_index import read_packed
-from pipeline.collection.sealing import damaged_rows, seal, sealed, sound_rows
+from pipeline.collection.sealing import seal, sealed, sound_rows
 from pipeline.records import ITEM_FIELDS, Found, Item, MeasurementRequest, Page, Result
 from pipeline.store.codec import StoreError
 from pipeline.store.results import DamagedRunError, Made, decode, decode_spacings, fetch, forget, made_of, of_object
@@ -220,12 +220,6 @@ def load_page(database: Engine | Connection, key: str) -> Found:
             "it again"
         )
     return found_of(members, {key: one.found for key, one in kept.items()})
-
-
-def damaged_pages(engine: Engine) -> Iterator[str]:
-    """Yield the keys of all pages that are not what was written."""
-    with engine.connect() as connection:
-        yield from damaged_rows(connection, PAGE)
 
 
 Places = Mapping[str, tuple[str, int, str]]
