@@ -1,7 +1,7 @@
 """Sizes of an object: those recorded, and those assumed from a recorded one by the proportions of its class."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import exp, hypot, log
@@ -123,9 +123,9 @@ class Sizes:
         """The record with the best estimates in place of what is not recorded."""
         return replace(self.item, **{f"{name}_m": one.value for name, one in self.assumed.items()})  # type: ignore[arg-type]
 
-    def used(self, names: Iterable[str]) -> dict[str, Estimate]:
-        """Return those of some sizes that are assumed."""
-        return {name: self.assumed[name] for name in names if name in self.assumed}
+    def used(self, names: Collection[str]) -> dict[str, Estimate]:
+        """Return those of some sizes that are assumed, in one order however they are named: pages number them in it."""
+        return {name: one for name, one in self.assumed.items() if name in names}
 
     @property
     def narrow(self) -> str:
