@@ -21,7 +21,7 @@ import pytest
 from filelock import FileLock
 from hypothesis import settings as trying
 
-from pipeline.execute.memory import RARELY
+from pipeline.execute.workers import RARELY
 from tests.soak import SOAK, examples
 from tests.warm import NIGHTLY
 
@@ -150,14 +150,15 @@ def postgresql_url(postgresql_databases: Callable[[], str]) -> str:
 def demo_folder() -> Path:
     """The folder of a demonstration that was run once: settings, database, reports; it is only looked at."""
     from pipeline.cli.console import Console
-    from pipeline.tools.demo import demo
+    from pipeline.night.run import run
+    from pipeline.tools.initialise import demonstration
     from tests.museum import DATABASE, in_common, with_tables
 
     def make(folder: Path) -> None:
         in_common(folder)
         with_tables(folder / DATABASE)
         _take_over(Path(__file__).parents[1] / "kouros-demo", folder)
-        demo(folder, Console(quiet=True))
+        run(demonstration(folder), Console(quiet=True))
 
     return made_once("demo", make)
 

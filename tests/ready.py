@@ -12,7 +12,7 @@ import pytest
 from pipeline.analysis.response import respond
 from pipeline.cli.console import Console
 from pipeline.models import MODELS
-from pipeline.verification.extremes import shaking
+from pipeline.verification.self_measurement import shaking
 from pipeline.verification.tradeoff import measure
 
 if __name__ == "__main__":

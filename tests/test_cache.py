@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from pipeline import cache
-from pipeline.analysis.response_charts.histories import Histories
-from pipeline.analysis.response_charts.refine import ChartCells
-from pipeline.analysis.response_charts.response_chart import ResponseChart
+from pipeline.analysis.response_charts.charts import Histories
+from pipeline.analysis.response_charts.response_chart import ChartCells, ResponseChart
 from pipeline.cache import (
     CHARTS,
     DAY,
@@ -32,7 +31,7 @@ from pipeline.cache import (
     CacheWarning,
     key_of,
 )
-from pipeline.event.stock import stock_of
+from pipeline.event.capacities import stock_of
 from pipeline.images.album import Album
 from pipeline.images.limits import ImageLimits
 from pipeline.models import model_named
@@ -42,7 +41,7 @@ from pipeline.records import Assessment, Axis, Chart, Excitation, Item, Scene, S
 from pipeline.resources import resource
 from pipeline.store import codec
 from pipeline.verification import selftest, tradeoff
-from pipeline.verification.outcome import Outcome
+from pipeline.verification.self_measurement import Outcome
 from tests.images.conftest import photograph
 
 LASTING = {SELF_TESTS, TRADEOFFS, THUMBNAILS}

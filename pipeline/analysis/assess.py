@@ -16,7 +16,7 @@ from pipeline.analysis.refinement import examine
 from pipeline.analysis.verdicts import Judgement, LevelMotions, capacity_of, judge
 from pipeline.models.unanchored import ABOUT
 from pipeline.records import Finding, Numerics, Scene
-from pipeline.records import run_sentences as say
+from pipeline.records import phrases as say
 from pipeline.records.numerics import AUTO, CHART, VERDICTS
 
 logger = logging.getLogger(__name__)

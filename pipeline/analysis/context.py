@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 from pipeline.analysis.response_charts import PROCESS_CHARTS, ChartCache
-from pipeline.analysis.response_charts.histories import CommonHistories, Histories
+from pipeline.analysis.response_charts.charts import CommonHistories, Histories
 from pipeline.cache import Cache
 from pipeline.records import Executor, Progress, Silent
 

@@ -14,7 +14,7 @@ from pipeline.analysis.response_charts import SAFETY, ChartCache, ResponseChart
 from pipeline.models import MODELS
 from pipeline.models.common import curve, rounded
 from pipeline.records import Chart, ChartFigure, Curve, Figure, Model, Motion, Numerics
-from pipeline.records import chart_words as on_chart
+from pipeline.records import picture as on_chart
 from pipeline.records.numerics import SCAN
 
 PICTURED = 2e-2

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from math import hypot, radians
 
-from pipeline.analysis.house.effect import HouseEffect
+from pipeline.analysis.house.matching import HouseEffect
 from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Anchorage, Estimate, Furniture, Item, Origin, Scene, Support
 from pipeline.records import phrases as say

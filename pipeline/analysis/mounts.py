@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, radians, sin
 
-from pipeline.analysis.house.effect import HouseEffect
-from pipeline.analysis.house.matching import MOUNTED_BY
+from pipeline.analysis.house.matching import MOUNTED_BY, HouseEffect
 from pipeline.analysis.section import share_of
 from pipeline.analysis.sizes import SIZES, Sizes, sizes_known
 from pipeline.records import Estimate, Item, Mount, Origin, Support

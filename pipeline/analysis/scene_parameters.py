@@ -7,7 +7,7 @@ from pipeline.analysis.flexibility import Body, concentration, estimated_frequen
 from pipeline.analysis.footing import base_extents, half_widths, rolling
 from pipeline.analysis.furniture import furniture_of
 from pipeline.analysis.hanging import HangingGuess, hanging_estimates, hanging_of, swings
-from pipeline.analysis.house.effect import HouseEffect
+from pipeline.analysis.house.matching import HouseEffect
 from pipeline.analysis.masses import mass_of, solid_mass
 from pipeline.analysis.mounts import MountGuess, mount_estimates
 from pipeline.analysis.section import Section, section_of, share_of

@@ -1,12 +1,12 @@
 """Sizes of an object: those recorded, and those assumed from a recorded one by the proportions of its class."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import exp, hypot, log
 
-from pipeline.analysis.shapes import faceless
+from pipeline.analysis.rule_table import faceless
 from pipeline.records import Estimate, Item, Origin, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
@@ -118,9 +118,9 @@ class Sizes:
         """The record with the best estimates in place of what is not recorded."""
         return replace(self.item, **{f"{name}_m": one.value for name, one in self.assumed.items()})  # type: ignore[arg-type]
 
-    def used(self, names: Iterable[str]) -> dict[str, Estimate]:
-        """Return those of some sizes that are assumed."""
-        return {name: self.assumed[name] for name in names if name in self.assumed}
+    def used(self, names: Collection[str]) -> dict[str, Estimate]:
+        """Return those of some sizes that are assumed, in one order however they are named: pages number them in it."""
+        return {name: one for name, one in self.assumed.items() if name in names}
 
     @property
     def narrow(self) -> str:

@@ -1,7 +1,7 @@
 """Survey of missing measurements: those without which nothing can be said, and those that may change what is decided.
 
 Where it is known how likely harm is, the joint samples tell already which number, once measured, may change what is
-decided (`pipeline.analysis.likelihood.worth`).  Where nobody draws samples, verdicts are settled.  A verdict is open
+decided (`pipeline.analysis.likelihood.sampling`).  Where nobody draws samples, verdicts are settled.  A verdict is open
 because inputs are uncertain: for each of them in turn, the object is assessed as if that one had been measured, as low,
 best and high; the others stay as uncertain as they are.  If the verdict stays open at all three, measuring that alone
 is taken to settle nothing.

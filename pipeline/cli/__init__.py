@@ -16,9 +16,8 @@ import pipeline
 from pipeline import __version__
 from pipeline.cli import commands
 from pipeline.cli.console import Guarded
-from pipeline.cli.options import Options
-from pipeline.cli.shared import with_shared
-from pipeline.execute.memory import RARELY
+from pipeline.cli.shared import Options, with_shared
+from pipeline.execute.workers import RARELY
 from pipeline.operations.event_log import note
 from pipeline.operations.stopping import Stopped, stoppable
 

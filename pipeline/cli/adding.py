@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pipeline.cli.console import aligned
-from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.cli.shared import Options, as_json, dry_run, say_dry
 
 if TYPE_CHECKING:
     from pipeline.motions.proposing import Answers, MissingAnswer
@@ -203,7 +203,7 @@ def _several(number: int) -> Callable[[str], list[float | str]]:
 
 
 def _lines(done: "Addition", *, guess: bool, dry: bool) -> list[str]:
-    from pipeline.cli.motions_words import swap_lines
+    from pipeline.cli.shared import swap_lines
     from pipeline.quantities import G, counted
 
     would = "would be " if dry else ""
@@ -258,7 +258,7 @@ def export(options: Options, site: str | None, quakeml: Path | None, geojson: Pa
     Example: kouros motions export demo_suite --geojson places.geojson --quakeml events.xml
     """
     from pipeline.operations.workspace import folder_of_site
-    from pipeline.tools.exporting import export as job
+    from pipeline.tools.strong_motion import export as job
 
     settings = options.settings() if Path(options.config).exists() else None
     for path in job(folder_of_site(settings, site), quakeml, geojson, dry_run=dry_run):

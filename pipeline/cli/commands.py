@@ -14,10 +14,10 @@ from pipeline.cli.event import event
 from pipeline.cli.explaining import print_explanation
 from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
-from pipeline.cli.options import Options, as_json, dry_run, say_dry
 from pipeline.cli.planning import plan
 from pipeline.cli.scanning import scan
 from pipeline.cli.serving import serve
+from pipeline.cli.shared import Options, as_json, dry_run, say_dry
 from pipeline.cli.surveying import survey
 from pipeline.cli.validating import validate
 from pipeline.quantities import counted
@@ -58,7 +58,7 @@ def demo(options: Options, place: Path | None, folder: Path | None, dry_run: boo
     from pipeline.night.run import run as job
     from pipeline.operations.job_monitor import watched
     from pipeline.operations.secrets import hider
-    from pipeline.tools.demo import demonstration
+    from pipeline.tools.initialise import demonstration
 
     settings = demonstration(folder, dry_run=dry_run)
     with options.console() as console:
@@ -82,8 +82,7 @@ def init(folder: Path, systemd: bool, dry_run: bool) -> None:
     Example: kouros init museum
     Example: kouros init museum --systemd
     """
-    from pipeline.tools.initialise import initialise
-    from pipeline.tools.systemd_units import write_units
+    from pipeline.tools.initialise import initialise, write_units
 
     units = write_units(folder, dry_run=dry_run) if systemd else []
     begun = [] if systemd and (folder / "kouros.toml").exists() else initialise(folder, dry_run=dry_run)
@@ -134,7 +133,7 @@ def check(options: Options, numerics: bool, deep: bool, migrate: bool, as_json: 
 
 
 def _check_deep(options: Options, as_json: bool) -> None:
-    from pipeline.tools.deep_check import examine
+    from pipeline.tools.doctor_checks import examine
 
     with options.console() as console:
         found = list(examine(options.settings(), console))

@@ -46,7 +46,7 @@ class Console:
         self._entered = ExitStack()
 
     def __enter__(self) -> Self:
-        from pipeline.records.compiling import told_of_compiling
+        from pipeline.records.protocols import told_of_compiling
 
         self._entered.enter_context(told_of_compiling(self._compiling))
         if not self.quiet and not self._plain:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pipeline.cli.console import printable
-from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.cli.shared import Options, as_json, dry_run, say_dry
 from pipeline.records import DecisionKind, Verdict
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pipeline.cli.console import aligned, printable
-from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.cli.shared import Options, as_json, dry_run, say_dry
 
 if TYPE_CHECKING:
     from pipeline.tools.event import EventDone, TypedShaking

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from pipeline.cli.console import printable
-from pipeline.cli.options import Options
+from pipeline.cli.shared import Options
 from pipeline.quantities import figures
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pipeline.cli.console import listed
-from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.cli.shared import Options, as_json, dry_run, say_dry
 from pipeline.quantities import counted
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pipeline.cli.console import aligned
-from pipeline.cli.options import as_json
+from pipeline.cli.shared import as_json
 from pipeline.quantities import figures
 
 if TYPE_CHECKING:

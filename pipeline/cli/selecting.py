@@ -8,7 +8,7 @@ import click
 import numpy as np
 
 from pipeline.cli.console import aligned
-from pipeline.cli.options import as_json, dry_run, say_dry
+from pipeline.cli.shared import as_json, dry_run, say_dry
 from pipeline.quantities import G, counted
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from pipeline.cli.console import printable
-from pipeline.cli.options import Options
+from pipeline.cli.shared import Options
 from pipeline.errors import InputError
 
 _NEEDED = {

@@ -1,12 +1,55 @@
-"""Options that every verb takes besides its own: how much is said, before the verb or after it; and --dry-run."""
+"""Options that verbs share: where the settings are, how much is said, --dry-run; and words that they share."""
 
-from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from pipeline.cli.options import Options
+from pipeline.cli.console import Console
+
+if TYPE_CHECKING:
+    from pipeline.settings import Settings
+    from pipeline.tools.compare_motions import Pair, Swap
+
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+
+
+def dry_run(told: str) -> Callable[[_Function], _Function]:
+    """Give a verb the option --dry-run, with what it says instead of doing it."""
+    return click.option("--dry-run", is_flag=True, help=f"{told}; write nothing.")
+
+
+def say_dry(wanted_json: bool) -> None:
+    """End a dry run with the words that nothing was written: beside JSON on standard error."""
+    from pipeline.operations.dry_run import NOTHING
+
+    click.echo(NOTHING, err=wanted_json)
+
+
+@dataclass(frozen=True)
+class Options:
+    """The options that all commands share."""
+
+    config: str = "kouros.toml"
+    quiet: bool = False
+    verbose: bool = False
+    debug: bool = False
+    log_json: bool = False
+
+    def console(self) -> Console:
+        """Return where progress goes: with JSON on standard error, nothing else does."""
+        return Console(quiet=self.quiet or self.log_json, verbose=self.verbose)
+
+    def settings(self) -> "Settings":
+        """Read the settings file."""
+        from pipeline.settings import load_settings
+
+        return load_settings(self.config)
+
 
 SAID = {
     ("-q", "--quiet"): "Say nothing but errors and results.",
@@ -57,3 +100,38 @@ def _no_dry_run(context: click.Context, _option: click.Parameter, value: Any) ->
     if value:
         why = _NO_DRY_RUN[str(context.command.name)]
         raise click.UsageError(f"{context.command_path} has no --dry-run: {why}; leave --dry-run out", context)
+
+
+def swap_lines(swap: "Swap", most: int = 20) -> list[str]:
+    """Return what a swap changes as lines: the measures of each motion, then the verdicts, of which most are listed."""
+    lines = [f"from {swap.old}", f"to   {swap.new}"]
+    for pair in swap.pairs:
+        lines += ["", f"{pair.level}: {pair.before or 'nothing'} -> {pair.after or 'nothing'}"]
+        lines += ["  the same samples"] if pair.same else _measure_lines(pair)
+    lines += ["", f"Verdicts: {swap.basis}"]
+    lines += [f"  {number:>6,}  {words}" for words, number in swap.moved.items()]
+    lines += [
+        f"  {v.object_number} ({v.gallery}) {v.model}, {v.level}: {v.before or 'none'} -> {v.after or 'none'}"
+        for v in swap.verdicts[:most]
+    ]
+    if len(swap.verdicts) > most:
+        lines.append(f"  and {len(swap.verdicts) - most:,} more (--json lists all)")
+    if not swap.verdicts and swap.basis.startswith("the "):
+        lines.append("  none changes")
+    return lines
+
+
+def _measure_lines(pair: "Pair") -> list[str]:
+    from pipeline.report import Units
+
+    units = {"pga": "m/s2", "pgv": "m/s", "pgd": "m", "duration": "s", "pulse_period": "s", "pulse_pgv": "m/s"}
+    lines = []
+    for name, (before, after) in pair.measures.items():
+        unit = next((u for stem, u in units.items() if name.startswith(stem)), "")
+        told = [
+            ("-" if value is None else Units().text(value, unit) if unit else f"{value:.3g}")
+            for value in (before, after)
+        ]
+        change = f"{after / before - 1:+.1%}" if before and after is not None else ""
+        lines.append(f"  {name:<16}{told[0]:>14} -> {told[1]:<14}{change}".rstrip())
+    return lines

@@ -20,14 +20,15 @@ from starlette.routing import Route
 from pipeline.desk import looking, saying, shaken
 from pipeline.desk.accounts import Attempts, digest, signed_in
 from pipeline.desk.asking import Asked, DeskAnswer
-from pipeline.desk.errors import BodyTooLongError, NotThereError
 from pipeline.desk.guard import (
     FORM_BYTES,
     FORM_COOKIE,
     NAME_COOKIE,
     REPORT_POLICY,
     SESSION_COOKIE,
+    BodyTooLongError,
     Guard,
+    NotThereError,
     Person,
     form_seed,
     form_token,
@@ -35,14 +36,13 @@ from pipeline.desk.guard import (
     named_cookie,
     person,
 )
-from pipeline.desk.kept_pages import KeptPages
-from pipeline.desk.site import AT_ONCE, DeskSite, DeskState
+from pipeline.desk.site import AT_ONCE, DeskSite, DeskState, KeptPages
 from pipeline.errors import KourosError
 from pipeline.operations.event_log import note
 from pipeline.report.language import speaking
 from pipeline.report.pages.environment import environment, fill
 from pipeline.resources import resource
-from pipeline.settings.serve import ServeSettings
+from pipeline.settings.operations import ServeSettings
 from pipeline.store.desk import end_session, picture_image
 
 logger = logging.getLogger(__name__)

@@ -22,7 +22,7 @@ from pipeline.collection.inventory import add_sheet
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.collection.record import plausible, to_records
-from pipeline.desk.errors import DeskError
+from pipeline.desk.guard import DeskError
 from pipeline.desk.numbers import read_number
 from pipeline.desk.object_facts import vocabulary
 from pipeline.errors import InputError

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from pipeline.collection.database import Database
-from pipeline.desk.errors import DeskError
+from pipeline.desk.guard import DeskError
 from pipeline.planning.errands import Errand
 from pipeline.planning.plan import ErrandPlan
 from pipeline.store.desk import ErrandWord, add_errand_word

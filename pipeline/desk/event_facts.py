@@ -6,17 +6,16 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from pipeline.desk.errors import NotThereError
+from pipeline.desk.guard import NotThereError
 from pipeline.event.answer import ObjectAnswer
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Band
 from pipeline.report.files.event_files import ANSWER
 from pipeline.report.text import clean
 from pipeline.store.event_reports import EventReport, event_reports, newest_report
-from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import load_head
-from pipeline.tools.event_folders import EVENTS, KeptEvent, kept_document, kept_events
-from pipeline.tools.event_reports import found_states, known_objects
+from pipeline.store.sound import whole_runs
+from pipeline.tools.event_folders import EVENTS, KeptEvent, found_states, kept_document, kept_events, known_objects
 
 
 @dataclass(frozen=True)

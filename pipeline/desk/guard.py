@@ -14,9 +14,26 @@ from starlette.responses import PlainTextResponse
 
 from pipeline.collection.database import Database
 from pipeline.desk.accounts import of_token
-from pipeline.desk.errors import BodyTooLongError
-from pipeline.settings.serve import LOCAL, ServeSettings
+from pipeline.errors import InputError
+from pipeline.settings.operations import LOCAL, ServeSettings
 from pipeline.tools.decisions import WHO_LIMIT, person_named
+
+
+class DeskError(InputError):
+    """The desk cannot do what it was asked to."""
+
+
+class StaleError(DeskError):
+    """Somebody else changed what a form was made of: it is told, and nothing of either is lost."""
+
+
+class NotThereError(DeskError):
+    """There is no such object, gallery or errand."""
+
+
+class BodyTooLongError(DeskError):
+    """More is sent than is taken."""
+
 
 SESSION_COOKIE, FORM_COOKIE, NAME_COOKIE = "kouros_session", "kouros_form", "kouros_name"
 

@@ -13,26 +13,45 @@ from pipeline.collection.inventory import items_named
 from pipeline.desk.asking import Asked, DeskAnswer, page_number
 from pipeline.desk.entering import labels, rules_version
 from pipeline.desk.errands import ErrandEntry, entries
-from pipeline.desk.errors import NotThereError
+from pipeline.desk.guard import NotThereError
 from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.object_facts import ObjectFacts, cells, vocabulary
 from pipeline.desk.run_facts import SHOWN, ListedObject, RunFacts
-from pipeline.desk.words import lasting, name_told
 from pipeline.planning.efforts import EffortSpan
 from pipeline.quantities import sorting_key
 from pipeline.records import DecisionKind, Support, in_force
 from pipeline.records.likelihood import CLASS
 from pipeline.report.assumed import assumed
-from pipeline.report.by_hand import by_hand
-from pipeline.report.language import _, said
+from pipeline.report.language import _, local, said
 from pipeline.report.pages.chances import MOUNT, class_title, name_of
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.errand_views import priced, spanned, title_of, trade_word
-from pipeline.report.pages.house_words import STATED, stated_told, word_told
 from pipeline.report.pages.notes import page_notes
+from pipeline.report.pages.scene_words import STATED, stated_told, word_told
 from pipeline.report.pages.views import STATES, DecisionView, State
-from pipeline.report.units import Units
+from pipeline.report.text import words
+from pipeline.report.units import Units, by_hand
 from pipeline.tables import table
+
+
+def lasting(minutes: float) -> str:
+    """Return how long something takes, in hours where it is more than one and a half."""
+    if minutes <= _LONG:
+        return _("%(minutes)s\u00a0min") % {"minutes": f"{minutes:.0f}"}
+    hours = minutes / 60.0
+    return _("%(hours)s\u00a0h") % {
+        "hours": local(f"{hours:.1f}".removesuffix(".0") if hours < _MANY else f"{hours:.0f}")
+    }
+
+
+_LONG, _MANY = 90.0, 5.0
+
+
+def name_told(name: str) -> str:
+    """Return the name of a field as a label."""
+    told = words(name)
+    return told[:1].upper() + told[1:]
+
 
 _ERRANDS_SHOWN = 100
 _NAMED = 3

@@ -10,7 +10,7 @@ from pipeline.analysis.house.questions import VOCABULARIES
 from pipeline.analysis.survey import Measurable, measurables
 from pipeline.collection.inventory import items_named
 from pipeline.collection.record import digest_of
-from pipeline.desk.errors import NotThereError
+from pipeline.desk.guard import NotThereError
 from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.run_facts import RunFacts
 from pipeline.records import (

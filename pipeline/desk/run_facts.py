@@ -1,10 +1,13 @@
-"""The newest run as the desk shows it: a list of all objects to search, and where the results of each are."""
+"""The newest run as the desk shows it: all objects, found by parts of words, and where the results of each are."""
 
 import unicodedata
+from bisect import bisect_right
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from heapq import merge
+from itertools import accumulate
 from operator import itemgetter
 from pathlib import Path
 from threading import Lock
@@ -13,9 +16,8 @@ from typing import Any
 from pipeline.analysis.classify import object_classes
 from pipeline.analysis.house.questions import MANY, stated_by
 from pipeline.analysis.survey import field_asked
-from pipeline.desk.errors import DeskError
-from pipeline.desk.word_index import WordIndex
-from pipeline.operations.presentation import presentation, terms_of
+from pipeline.desk.guard import DeskError
+from pipeline.operations.report_status import presentation, terms_of
 from pipeline.operations.workspace import Workspace
 from pipeline.planning.plan import ErrandPlan, gallery_order
 from pipeline.quantities import sorting_key
@@ -30,8 +32,72 @@ from pipeline.report.pages.compose import page_name
 from pipeline.report.pages.describe import Sayings
 from pipeline.report.pages.views import State
 from pipeline.store.pages import Places, load_places
-from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import load_head
+from pipeline.store.sound import whole_runs
+
+_FEW = 400
+"""Different words with a part in them up to which their lines are put together: more words stand in so many lines that
+the first ones are found soonest line by line."""
+
+
+class WordIndex:
+    """An index of lines.
+
+    A part of a word is sought among the different words, of which there are far fewer than words.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Words parted by single spaces.
+    """
+
+    def __init__(self, lines: Sequence[str]) -> None:
+        self._lines = lines
+        places: dict[str, list[int]] = {}
+        for at, line in enumerate(lines):
+            for word in dict.fromkeys(line.split(" ")):
+                places.setdefault(word, []).append(at)
+        # Most words of a museum are its numbers: no word with a letter is sought among them.
+        words = sorted(places, key=_no_letter)
+        self._places = [places[word] for word in words]
+        # In bytes, of which most words have fewer than letters take.
+        self._text = b"".join(b"\n" + word.encode() for word in words) + b"\n"
+        lengths = (len(word.encode()) + 1 for word in words)
+        self._starts = list(accumulate(lengths, initial=1))
+        self._lettered = self._starts[sum(not _no_letter(word) for word in words)]
+
+    def having(self, parts: Sequence[str]) -> Iterator[int]:
+        """Yield the places of the lines that have all parts in their words, in order.
+
+        parts : without spaces, one at least
+        """
+        rarest = min((self._words_with(part) for part in parts), key=len)
+        if len(rarest) > _FEW:
+            found: Iterator[int] = iter(range(len(self._lines)))
+        else:
+            found = merge(*(self._places[word] for word in rarest))
+        last = -1
+        for at in found:
+            # A line may have several of the words.
+            if at != last and all(part in self._lines[at] for part in parts):
+                yield at
+            last = at
+
+    def _words_with(self, part: str) -> list[int]:
+        """Return the different words that have a part, or some more than a few of them."""
+        text, sought, found = self._text, part.encode("utf-8", "replace"), list[int]()
+        end = len(text) if _no_letter(part) else self._lettered
+        at = text.find(sought, 0, end)
+        while at >= 0 and len(found) <= _FEW:
+            word = bisect_right(self._starts, at) - 1
+            found.append(word)
+            at = text.find(sought, self._starts[word + 1], end)
+        return found
+
+
+def _no_letter(word: str) -> bool:
+    return not any(map(str.isalpha, word))
+
 
 SHOWN = 50
 """Objects on a page of what a search finds."""

@@ -1,20 +1,61 @@
-"""What people say to the desk: each goes where the command of the same purpose puts it, or back to the form."""
+"""What people say to the desk, photographs too: each goes where its command puts it, or back to the form."""
 
+import warnings
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from io import BytesIO
+
+from PIL import Image, ImageOps
 
 from pipeline.desk.asking import Asked, DeskAnswer, address
 from pipeline.desk.entering import CellsError, end_rule, enter, house_rule, rules_version, state_rule, writing
 from pipeline.desk.errands import say
-from pipeline.desk.errors import DeskError, NotThereError, StaleError
+from pipeline.desk.guard import DeskError, NotThereError, StaleError
 from pipeline.desk.looking import errand_context, errand_named, house_context, object_context
 from pipeline.desk.numbers import read_number
 from pipeline.desk.object_facts import ObjectFacts
-from pipeline.desk.pictures import taken_picture
 from pipeline.errors import InputError, KourosError
 from pipeline.records import DecisionKind
 from pipeline.store.desk import Picture, add_picture
 from pipeline.tools.decisions import WHO_LIMIT, WHY_LIMIT, Wish, decide
+
+EDGE = 1600
+"""Pixels of the longer side of what is kept."""
+
+PIXELS = 60_000_000
+"""Of the largest picture that is decoded: what a telephone takes, and what memory bears."""
+
+_FORMATS = ("JPEG", "PNG", "WEBP")
+
+
+def taken_picture(content: bytes) -> bytes:
+    """Return a photograph as it is kept: a JPEG without what its camera wrote of place and time.
+
+    Raises
+    ------
+    InputError
+        For what is no picture of a kind that is taken, is too large, or is damaged.
+    """
+    try:
+        with warnings.catch_warnings():
+            # Pillow warns of what may be a bomb; here it is refused.
+            warnings.simplefilter("error")
+            with Image.open(BytesIO(content), formats=_FORMATS) as picture:
+                if picture.width * picture.height > PIXELS:
+                    raise InputError(f"the picture has more than {PIXELS // 1_000_000} million pixels; make it smaller")
+                picture.draft("RGB", (EDGE, EDGE))
+                upright = ImageOps.exif_transpose(picture) or picture
+                small = upright.convert("RGB")
+                small.thumbnail((EDGE, EDGE))
+    except InputError:
+        raise
+    except Exception as problem:
+        # Whatever a decoder stumbles over is a damaged picture.
+        raise InputError("the photograph cannot be read; take a JPEG, PNG or WebP picture") from problem
+    out = BytesIO()
+    small.save(out, "JPEG", quality=85)
+    return out.getvalue()
+
 
 STALE = (
     "Somebody else changed this while it was open here. What is there now stands below; nothing of yours was saved, "

@@ -13,7 +13,7 @@ from pipeline.desk.app import desk_app
 from pipeline.errors import InputError
 from pipeline.operations.workspace import open_workspace
 from pipeline.settings import Settings, load_settings
-from pipeline.settings.serve import ServeSettings
+from pipeline.settings.operations import ServeSettings
 from pipeline.store.desk import accounts, remove_account
 
 PASSWORD_VARIABLE = "KOUROS_NEW_PASSWORD"  # noqa: S105 - the name of a variable

@@ -7,8 +7,8 @@ from threading import Lock
 from typing import Any
 
 from pipeline.desk.asking import Asked, DeskAnswer, address, page_number
-from pipeline.desk.errors import DeskError, NotThereError, StaleError
 from pipeline.desk.event_facts import EventFacts
+from pipeline.desk.guard import DeskError, NotThereError, StaleError
 from pipeline.desk.saying import signed
 from pipeline.errors import InputError, KourosError
 from pipeline.event.answer import ObjectAnswer
@@ -20,7 +20,7 @@ from pipeline.report.units import Units, percent
 from pipeline.store.event_reports import EventReport, add_event_reports
 from pipeline.tools.decisions import person_here
 from pipeline.tools.event import answer_again
-from pipeline.tools.event_reports import report_of
+from pipeline.tools.event_folders import report_of
 
 SHOWN = 100
 """Objects of a gallery on one page."""

@@ -1,8 +1,10 @@
-"""What all pages of the desk share: the workspace, the newest run, the decisions; each renewed when it changes."""
+"""What all pages of the desk share: workspace, newest run, decisions, filled-in pages; renewed when they change."""
 
 import gc
 import logging
 import time
+from collections import OrderedDict
+from collections.abc import Hashable
 from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
@@ -14,10 +16,10 @@ from pipeline.operations.workspace import Workspace, open_workspace
 from pipeline.records import Decision
 from pipeline.report.pages.environment import environment, fragments
 from pipeline.settings import load_settings
-from pipeline.settings.serve import ServeSettings
+from pipeline.settings.operations import ServeSettings
 from pipeline.store.decisions import read_decisions
 from pipeline.store.desk import ErrandWord, errand_words, newest_ids
-from pipeline.store.reuse import whole_runs
+from pipeline.store.sound import whole_runs
 
 logger = logging.getLogger(__name__)
 
@@ -168,3 +170,42 @@ class DeskSite:
         """
         run, newest = self.run, self._renew(newest)
         return self.objects.facts(run, number, self._log.get(number, ()), pictured=newest[2] > 0)
+
+
+class KeptPages:
+    """The pages that were asked for last, all of one state of the museum.
+
+    Parameters
+    ----------
+    most : int
+        Characters of all pages together that are kept.
+    """
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._state: Hashable = None
+        self._pages: OrderedDict[Hashable, str] = OrderedDict()
+        self._length = 0
+        self._lock = Lock()
+
+    def get(self, state: Hashable, key: Hashable) -> str | None:
+        """Return a page as it is in a state; None where nobody asked for it since that began."""
+        with self._lock:
+            if state != self._state or key not in self._pages:
+                return None
+            self._pages.move_to_end(key)
+            return self._pages[key]
+
+    def keep(self, state: Hashable, key: Hashable, page: str) -> None:
+        """Keep a page.
+
+        state : as it was before anything of the page was looked up, so that what changed meanwhile is shown next time
+        """
+        with self._lock:
+            if state != self._state:
+                self._state, self._length = state, 0
+                self._pages.clear()
+            self._length += len(page) - len(self._pages.pop(key, ""))
+            self._pages[key] = page
+            while self._length > self._most:
+                self._length -= len(self._pages.popitem(last=False)[1])

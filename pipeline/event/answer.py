@@ -13,9 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.event.capacities import KINDS, Capacities
+from pipeline.event.capacities import KINDS, Capacities, Stock
 from pipeline.event.message import SiteShaking
-from pipeline.event.stock import Stock
 from pipeline.quantities import Array, G
 from pipeline.records import Band, Harm, Sampling
 from pipeline.records.fragility import HARM

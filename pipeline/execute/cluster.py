@@ -11,8 +11,7 @@ from typing import Any
 import dask
 from distributed import Client, KilledWorker
 
-from pipeline.execute.memory import collecting_rarely
-from pipeline.execute.workers import AHEAD, Pending, PoolError, Result, Shared, Task, in_order
+from pipeline.execute.workers import AHEAD, Pending, PoolError, Result, Shared, Task, collecting_rarely, in_order
 
 logger = logging.getLogger(__name__)
 

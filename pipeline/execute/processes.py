@@ -25,8 +25,17 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Self
 
 from pipeline.errors import raised_at
-from pipeline.execute.memory import collecting_rarely
-from pipeline.execute.workers import AHEAD, DEATHS, Pending, PoolError, Result, Shared, Task, in_order
+from pipeline.execute.workers import (
+    AHEAD,
+    DEATHS,
+    Pending,
+    PoolError,
+    Result,
+    Shared,
+    Task,
+    collecting_rarely,
+    in_order,
+)
 
 logger = logging.getLogger(__name__)
 

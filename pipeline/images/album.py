@@ -22,10 +22,8 @@ import numpy as np
 from pipeline.cache import DAY, THUMBNAILS, Cache, CacheEntry, key_of
 from pipeline.errors import fault_words
 from pipeline.images.decoding import VERSION, Decoder
-from pipeline.images.errors import ImageError
-from pipeline.images.fetching import Fetched, Fetcher, Hosts
-from pipeline.images.iiif import is_document, pictures_of
-from pipeline.images.limits import ImageLimits
+from pipeline.images.fetching import Fetched, Fetcher, Hosts, is_document, pictures_of
+from pipeline.images.limits import ImageError, ImageLimits
 from pipeline.records import Photo, Progress
 
 _INDEX = "index"

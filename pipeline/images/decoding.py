@@ -11,7 +11,7 @@ from pathlib import Path
 from threading import Timer
 from typing import IO, Any
 
-from pipeline.images.errors import ImageError
+from pipeline.images.limits import ImageError
 from pipeline.records import Photo
 
 VERSION = 1

@@ -1,7 +1,9 @@
-"""Where photographs may be, and how much is spent on them."""
+"""Where photographs may be, how much is spent on them, and why one is not shown."""
 
 from dataclasses import dataclass
 from pathlib import Path
+
+from pipeline.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -34,3 +36,19 @@ class ImageLimits:
     seconds: float = 10.0
     minutes: float = 30.0
     ask_again_days: float = 30.0
+
+
+class ImageError(InputError):
+    """A photograph that cannot be shown: what is wrong, and what mends it.
+
+    Attributes
+    ----------
+    what, remedy : str
+        In words.
+    lasting : bool
+        Whether it is the same tomorrow unless somebody mends it; else it is tried again every night.
+    """
+
+    def __init__(self, what: str, remedy: str, *, lasting: bool = True) -> None:
+        super().__init__(f"{what}; {remedy}")
+        self.what, self.remedy, self.lasting = what, remedy, lasting

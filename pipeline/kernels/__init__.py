@@ -17,7 +17,7 @@ import numpy as np
 from numba.core import event
 
 from pipeline.quantities import Array
-from pipeline.records.compiling import tell_of_compiling
+from pipeline.records.protocols import tell_of_compiling
 
 FIRST = np.int64(0)
 """An index to begin with: for a literal number or truth value as an argument numba compiles the callee once more."""
@@ -159,3 +159,15 @@ fused: Callable[..., Any] = _compiled(_nrt=False, no_cpython_wrapper=True, no_cf
 
 inlined: Callable[..., Any] = _compiled(inline="always")
 """Decorator of a function that must melt into the loop around it for the loop to be vectorised."""
+
+
+CONTACT_LOST = 1
+"""The vertical acceleration went below -g: no weight, no friction; flight and landing are not modelled."""
+CUT = 2
+"""Still moving when the tail or its cap ended."""
+EVENT_CAP = 4
+"""More events in one sample interval than are followed: the body was put to rest until the next sample."""
+SENSITIVE = 8
+"""An event that hangs on less than the error of the integration: a body that just stops, or just does not."""
+UNRESOLVED = 128
+"""More steps than are taken: not followed.  Without a cap a body too fast for its motion would be followed for ever."""

@@ -23,8 +23,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, inner, kernel
-from pipeline.kernels.flags import CONTACT_LOST, CUT, UNRESOLVED
+from pipeline.kernels import CONTACT_LOST, CUT, FIRST, UNRESOLVED, inner, kernel
 from pipeline.kernels.line_phase import (
     MU_K,
     MU_S,
@@ -421,7 +420,7 @@ def friction_line_batch(
         Seconds to go on after the record; 0: none; below 0: until it rests for good, or CAP.
     results : ndarray, shape (m, 5)
         Receives the largest ``|u|`` [m], the residual ``|u|`` [m], the path [m], the largest acceleration passed on
-        [m/s2] and the flags (`pipeline.kernels.flags`).
+        [m/s2] and the flags (`pipeline.kernels`).
     history : ndarray, shape (k, 2)
         Receives u [m] and the absolute acceleration [m/s2] of a single body at the samples, as long as it is; rows
         after the record follow the body on without excitation.

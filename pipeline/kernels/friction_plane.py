@@ -15,8 +15,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, inner, kernel
-from pipeline.kernels.flags import CONTACT_LOST, CUT, SENSITIVE, UNRESOLVED
+from pipeline.kernels import CONTACT_LOST, CUT, FIRST, SENSITIVE, UNRESOLVED, inner, kernel
 from pipeline.kernels.friction_line import CAP, FAINT, MOST_AFTER
 from pipeline.kernels.plane_peaks import felt, inner_felt, inner_radius, note, stop_radius
 from pipeline.kernels.plane_step import plane_step

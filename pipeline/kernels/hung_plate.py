@@ -26,8 +26,7 @@ Brogliato, B. (2016). Nonsmooth Mechanics. 3rd ed., Springer. Ch. 5: contacts, c
 
 import math
 
-from pipeline.kernels import bare, fused
-from pipeline.kernels.flags import CUT, EVENT_CAP, UNRESOLVED
+from pipeline.kernels import CUT, EVENT_CAP, UNRESOLVED, bare, fused
 from pipeline.kernels.pendulum import substeps
 from pipeline.quantities import Array, G
 
@@ -228,7 +227,7 @@ def hung_plate_batch(
         Divides the step.
     results : ndarray, shape (m, 4)
         Receives the largest lift, m, opening, rad, and speed at which the lower edge strikes the wall, m/s, and the
-        flags (`pipeline.kernels.flags`); infinite where it is not followed.
+        flags (`pipeline.kernels`); infinite where it is not followed.
     history : ndarray, shape (k, 2)
         Receives theta, rad, and h, m, of a single plate at the samples, as long as it is.
     """

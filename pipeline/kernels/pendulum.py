@@ -17,8 +17,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, bare, fused, inlined, kernel
-from pipeline.kernels.flags import CUT, UNRESOLVED
+from pipeline.kernels import CUT, FIRST, UNRESOLVED, bare, fused, inlined, kernel
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.roots import narrowed, trial
 from pipeline.quantities import Array, G
@@ -286,7 +285,7 @@ def pendulum_batch(
     refine : int
         By what the standard step is divided; the error falls with its fourth power.
     results : ndarray, shape (m, 2)
-        Receives the largest ``|theta|`` [rad] and the flags (`pipeline.kernels.flags`); NaN where it is not followed.
+        Receives the largest ``|theta|`` [rad] and the flags (`pipeline.kernels`); NaN where it is not followed.
     history : ndarray, shape (k, 1)
         Receives theta [rad] of a single pendulum at the samples, as long as it is.
 

@@ -17,8 +17,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, fused, inner, kernel
-from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
+from pipeline.kernels import CONTACT_LOST, CUT, EVENT_CAP, FIRST, fused, inner, kernel
 from pipeline.kernels.quiet import next_above
 from pipeline.kernels.rock_phase import ANGLE, SPEED, landing, lift_off, locate, rock_step
 from pipeline.quantities import Array, G
@@ -304,7 +303,7 @@ def rocking_batch(
         REST, or less for a body whose rests matter.
     results : ndarray, shape (m, 8)
         Receives the largest phi / alpha_s [-], whether it overturned (0, 1), the times of overturning and of uplift [s]
-        (-1: never), the number of impacts, the flags (`pipeline.kernels.flags`), the last time above NEAR [s] (to a
+        (-1: never), the number of impacts, the flags (`pipeline.kernels`), the last time above NEAR [s] (to a
         sample or a step), and whether (0, 1) an edge lifted again before the impacts that a rest cut off would have
         ended.
     history : ndarray, shape (k, 1)

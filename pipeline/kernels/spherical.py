@@ -14,8 +14,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, inlined, inner, kernel
-from pipeline.kernels.flags import CUT, UNRESOLVED
+from pipeline.kernels import CUT, FIRST, UNRESOLVED, inlined, inner, kernel
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.pendulum import CAP, MOST_AFTER, STEP, substeps
 from pipeline.kernels.roots import narrowed, trial
@@ -233,7 +232,7 @@ def spherical_batch(
     dt, peak, length, zeta, tail, refine
         As in `pipeline.kernels.pendulum.pendulum_batch`.
     results : ndarray, shape (m, 2)
-        Receives the largest horizontal displacement over L [-] and the flags (`pipeline.kernels.flags`); NaN where it
+        Receives the largest horizontal displacement over L [-] and the flags (`pipeline.kernels`); NaN where it
         is not followed.
     history : ndarray, shape (k, 2)
         Receives the horizontal displacement over L [-] of a single pendulum at the samples, as long as it is.

@@ -16,8 +16,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, inlined, inner, kernel
-from pipeline.kernels.flags import CUT, EVENT_CAP, UNRESOLVED
+from pipeline.kernels import CUT, EVENT_CAP, FIRST, UNRESOLVED, inlined, inner, kernel
 from pipeline.kernels.line_phase import TERMS, Body, free_body
 from pipeline.kernels.quiet import next_above
 from pipeline.kernels.rocking import CAP, NEAR, STEP

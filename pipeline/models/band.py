@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.cache import SPECTRA, Cache, CacheEntry, key_of
+from pipeline.models.common import remembered
 from pipeline.models.oscillator import oscillate_any
-from pipeline.models.remembering import remembered
 from pipeline.quantities import Array
 from pipeline.records import Excitation
 

@@ -1,33 +1,77 @@
-"""Parts that several generic models share: flags in words, excitations prepared once, error floors."""
+"""Parts that several generic models share: flags in words, excitations prepared once, error floors, threads.
 
-from collections.abc import Mapping, Sequence
+What is told of a motion, remembered for as long as somebody holds it.
+
+Most motions are drawn, asked a few things and let go; a cache of the latest so many would hold those alone.
+
+The sets of one call of a kernel, shared by threads: kernels release the lock, and no set knows of another.
+
+Parts end where lanes do, and kernels put only equals side by side: what is found is the same, bit for bit, on any
+number of threads.
+"""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import wraps
+from itertools import pairwise
+from typing import TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from pipeline.kernels import flags, samples
+from pipeline.kernels import CONTACT_LOST, CUT, EVENT_CAP, SENSITIVE, UNRESOLVED, samples
+from pipeline.kernels.lanes import LANES
 from pipeline.kernels.quiet import block_maxima, largest_ratio
-from pipeline.models.remembering import remembered
 from pipeline.quantities import Array, G
-from pipeline.records import Curve, Excitation, Scene, Support
+from pipeline.records import Curve, Excitation, Motion, Scene, Support
+
+_Shaking = TypeVar("_Shaking", Motion, Excitation)
+_Told = TypeVar("_Told")
+
+
+def remembered(of: Callable[[_Shaking], _Told]) -> Callable[[_Shaking], _Told]:
+    """Have a function of a motion alone, or of an excitation, called once for each.
+
+    Parameters
+    ----------
+    of : callable
+        What it returns must not hold the motion, which would live as long then.
+
+    Returns
+    -------
+    callable
+        Returns the same.
+    """
+    known: WeakKeyDictionary[_Shaking, _Told] = WeakKeyDictionary()
+
+    @wraps(of)
+    def told(motion: _Shaking) -> _Told:
+        found = known.get(motion)
+        if found is None:
+            found = known[motion] = of(motion)
+        return found
+
+    return told
+
 
 NO_VERTICAL = "the motion has no vertical component: what that would lift or load is not in this"
 """Said of what the vertical shaking loads or unloads, under a motion without any."""
 
-SENSITIVE = flags.SENSITIVE
 NO_TILT = 16
 NO_HISTORY = 32
 BOUND = 64
 
 NOTES = {
-    flags.CONTACT_LOST: "contact lost (vertical acceleration below -g); flight and landing are not modelled",
-    flags.CUT: "still moving when the tail was cut",
-    flags.EVENT_CAP: "more impacts than are followed in one sample interval",
+    CONTACT_LOST: "contact lost (vertical acceleration below -g); flight and landing are not modelled",
+    CUT: "still moving when the tail was cut",
+    EVENT_CAP: "more impacts than are followed in one sample interval",
     SENSITIVE: "sensitive: 1 % of amplitude may change the outcome, or any change is magnified 1,000 times",
     NO_TILT: "no tilt reproduces an acceleration of 1 g or more",
     NO_HISTORY: "a closed-form screen, not a response",
     BOUND: "a guaranteed upper bound, not a response",
-    flags.UNRESOLVED: "too fast for the steps that are taken: not followed; an upper bound, or empty where it has none",
+    UNRESOLVED: "too fast for the steps that are taken: not followed; an upper bound, or empty where it has none",
 }
 """What each bit of a result's note means."""
 
@@ -118,7 +162,7 @@ def shaken(motion: Excitation) -> float:
 
 def contact_lost(motion: Excitation, size: int) -> Array:
     """Return the flag of lost contact (size,) where the vertical acceleration goes below -g, else 0."""
-    return np.full(size, float(flags.CONTACT_LOST) if np.min(motion.z) < -G else 0.0)
+    return np.full(size, float(CONTACT_LOST) if np.min(motion.z) < -G else 0.0)
 
 
 @remembered
@@ -324,3 +368,51 @@ def unless_free(scene: Scene, what: str) -> str:
         Support.ISOLATED: f"it is fastened to an isolator, so it does not {what} on it",
     }
     return reasons.get(scene.support, "")
+
+
+WORTH = 200_000
+"""Sets times samples below which handing a part on may cost more than it saves: about a millisecond of work, where
+threads cost a tenth of one. They live as long as the call, so that a process that is to be forked has none."""
+
+TURNS = 4
+"""Parts for each thread: some sets take far longer than others."""
+
+_threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def share_among(threads: int) -> None:
+    """Share the calls of this process among so many threads; 1: each runs where it was made."""
+    global _threads  # noqa: PLW0603 - of the whole process, as its cores are
+    _threads = max(1, threads)
+
+
+def shared(run: Callable[[slice], None], sets: int, samples: int, together: int = LANES) -> None:
+    """Run a kernel on all sets, in parts that threads share.
+
+    Parameters
+    ----------
+    run : callable
+        Runs it on some of the sets.
+    sets, samples : int
+        How many there are, and of how many samples the motion is.
+    together : int
+        How many the kernel works on side by side.
+    """
+    blocks = -(-sets // together)
+    parts = min(TURNS * _threads, blocks)
+    if _threads < 2 or parts < 2 or sets * samples < WORTH:
+        run(slice(0, sets))
+        return
+    ends = [min(sets, together * (blocks * part // parts)) for part in range(parts + 1)]
+    # Whoever is free takes the next.
+    waiting = iter([slice(*pair) for pair in pairwise(ends)])
+
+    def take() -> None:
+        for part in waiting:
+            run(part)
+
+    with ThreadPoolExecutor(min(_threads, parts) - 1, thread_name_prefix="kernel") as pool:
+        others = [pool.submit(take) for _ in range(min(_threads, parts) - 1)]
+        take()
+    for other in others:
+        other.result()

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.models.common import SENSITIVE
+from pipeline.kernels import SENSITIVE
 from pipeline.quantities import Array
 from pipeline.records import Columns, Model, Motion
 

@@ -6,21 +6,20 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.errors import InputError
+from pipeline.kernels import SENSITIVE, UNRESOLVED
 from pipeline.kernels.bounds import slip_bounds_batch
-from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.friction_line import CAP, friction_line_batch
 from pipeline.kernels.friction_plane import friction_plane_batch
 from pipeline.models.common import (
     ROUNDING,
-    SENSITIVE,
     Quiet,
     after_record,
     contact_lost,
     lift_ratios,
     magnified,
     pushes,
+    shared,
 )
-from pipeline.models.sharing import shared
 from pipeline.quantities import Array, G
 from pipeline.records import Bounds, Columns, Excitation
 

@@ -23,8 +23,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import N_, NO_VERTICAL, ROUNDING, needs
-from pipeline.models.remembering import remembered
+from pipeline.models.common import N_, NO_VERTICAL, ROUNDING, needs, remembered
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Columns, Excitation, Harm, Model, Motion, Scene, Support, Trials
 

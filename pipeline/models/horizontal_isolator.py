@@ -21,7 +21,7 @@ from pipeline.models.friction import stick_slip, stick_slip_trace
 from pipeline.models.sliding import DIRECTIONS
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Harm, Model, Scene, Support, Trials
-from pipeline.records import chart_words as on_chart
+from pipeline.records import picture as on_chart
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:

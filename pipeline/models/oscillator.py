@@ -20,12 +20,11 @@ from pipeline.errors import InputError
 from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
 from pipeline.kernels.resultant import resultant_batch
-from pipeline.models.common import N_, ROUNDING, after_record, curve, grid
+from pipeline.models.common import N_, ROUNDING, after_record, curve, grid, shared
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
-from pipeline.models.sharing import shared
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Axis, Bounds, Chart, Columns, Excitation, Figure, Model, Motion, Scene, Trials
-from pipeline.records import chart_words as on_chart
+from pipeline.records import picture as on_chart
 
 MOST_PHASE = 2e6
 """Radians of an oscillator's own, its damping counted in, in a sample interval from which on it is refused."""

@@ -12,7 +12,7 @@ from pipeline.models.common import NO_HISTORY, largest_push, largest_speed
 from pipeline.models.flips import FELL, FELL_AT, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Columns, Excitation, Harm, Scene
-from pipeline.records import run_sentences as say
+from pipeline.records import phrases as say
 
 HALF_WIDTH = Quantity("half_width", "m", "from the centre of gravity to the edge towards +axis", 0.0, exclusive=True)
 HALF_WIDTH_OTHER = Quantity(

@@ -32,12 +32,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.kernels import flags
+from pipeline.kernels import CONTACT_LOST, SENSITIVE
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.models.common import (
     N_,
     NO_VERTICAL,
-    SENSITIVE,
     broadcast,
     contact_lost,
     curve,
@@ -47,12 +46,12 @@ from pipeline.models.common import (
     needs,
     unless_free,
 )
-from pipeline.models.doubt import doubt
 from pipeline.models.flips import (
     ALL,
     FLAGS,
     Integration,
     Rows,
+    doubt,
     flips,
     integrate,
 )
@@ -95,7 +94,7 @@ from pipeline.records import (
     Trials,
     Zone,
 )
-from pipeline.records import chart_words as on_chart
+from pipeline.records import picture as on_chart
 
 
 def uplift_ratios(motion: Excitation, body: Array) -> Array:
@@ -122,7 +121,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     run = _runs(body, broadcast(parameters, "initial_rotation"))
     uplift = uplift_ratios(motion, body)
     fine = run(motion, ALL, 2 * refine if estimate else refine)
-    note = fine[:, FLAGS].astype(np.int64) | np.where(np.isinf(uplift), flags.CONTACT_LOST, 0)
+    note = fine[:, FLAGS].astype(np.int64) | np.where(np.isinf(uplift), CONTACT_LOST, 0)
     error = np.full(uplift.size, np.nan)
     if estimate:
         coarse = run(motion, ALL, refine)

@@ -38,7 +38,7 @@ from pipeline.records import (
     Support,
     Trials,
 )
-from pipeline.records import chart_words as on_chart
+from pipeline.records import picture as on_chart
 
 FRICTION_STATIC = Quantity("friction_static", "-", "coefficient at rest", 0.0)
 FRICTION_KINETIC = Quantity(

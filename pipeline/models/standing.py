@@ -45,19 +45,30 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.kernels import SENSITIVE, UNRESOLVED
 from pipeline.kernels import standing_body as kernel
-from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.kernels.standing import standing_batch
-from pipeline.models.common import NO_VERTICAL, ROUNDING, SENSITIVE, SHIFT, Quiet, lift_ratios, needs, unless_free
-from pipeline.models.doubt import APART, apart, doubt
+from pipeline.models.common import (
+    NO_VERTICAL,
+    ROUNDING,
+    SHIFT,
+    Quiet,
+    lift_ratios,
+    needs,
+    shared,
+    unless_free,
+)
 from pipeline.models.flips import (
     ALL,
+    APART,
     FELL,
     FLAGS,
     RATIO,
     Integration,
     Rows,
+    apart,
+    doubt,
     flips,
 )
 from pipeline.models.friction import kinetic, slip_bounds
@@ -86,11 +97,10 @@ from pipeline.models.rigid_body import (
     tipped,
     tipping,
 )
-from pipeline.models.sharing import shared
 from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Estimate, Excitation, Harm, Model, Origin, Scene, Support, Trials
-from pipeline.records import run_sentences as say
+from pipeline.records import phrases as say
 
 SLIDES = "slides"
 

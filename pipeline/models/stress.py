@@ -30,7 +30,7 @@ from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.models.oscillator import OSCILLATES, PROMISED
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Item, Model, Scene, Support, Trials
-from pipeline.records import run_sentences as say
+from pipeline.records import phrases as say
 
 RIGID_PERIOD = 0.06
 """Period [s] up to which ASCE 7 calls a component rigid."""

@@ -29,17 +29,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.errors import InputError
-from pipeline.kernels import samples
-from pipeline.kernels.flags import UNRESOLVED
+from pipeline.kernels import UNRESOLVED, samples
 from pipeline.kernels.pendulum import MOST_STEPS, pendulum_batch
 from pipeline.kernels.spherical import spherical_batch
-from pipeline.models.common import N_, NO_HISTORY, ROUNDING, broadcast, grid, magnified, needs, shaken
+from pipeline.models.common import N_, NO_HISTORY, ROUNDING, broadcast, grid, magnified, needs, shaken, shared
 from pipeline.models.horizontal_isolator import DAMPING
-from pipeline.models.sharing import shared
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Hanging, Model, Scene, Support, Trials
-from pipeline.records import chart_words as on_chart
-from pipeline.records import run_sentences as say
+from pipeline.records import phrases as say
+from pipeline.records import picture as on_chart
 
 CHANDELIER = 1.4
 """The paper's factor on the undamped two-dimensional result for an object that swings in all directions."""

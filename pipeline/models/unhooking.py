@@ -43,13 +43,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.kernels import samples
-from pipeline.kernels.flags import SENSITIVE
+from pipeline.kernels import SENSITIVE, samples
 from pipeline.kernels.hung_plate import hung_plate_batch
 from pipeline.models.common import N_, NO_VERTICAL, broadcast, grid, lift_ratios, needs, shaken
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Columns, Excitation, Hanging, Harm, Model, Scene, Support, Trials
-from pipeline.records import run_sentences as say
+from pipeline.records import phrases as say
 
 DOUBT = 0.01
 """Share of the lift from which the difference of two steps says that it hangs on the integration."""

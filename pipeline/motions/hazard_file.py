@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pipeline.motions.errors import refusal
 from pipeline.quantities import G
-from pipeline.records.hazard import HazardCurve, Measure
+from pipeline.records.fragility import HazardCurve, Measure
 from pipeline.resources import small_text
 
 INTENSITIES: dict[str, tuple[Measure, float, float]] = {

@@ -36,7 +36,7 @@ from pipeline.motions.reading import Recording, read_record
 from pipeline.motions.record import Record
 from pipeline.quantities import Array
 from pipeline.records import Motion
-from pipeline.records.hazard import HazardCurve
+from pipeline.records.fragility import HazardCurve
 from pipeline.supports import TRANSMITTED, refined
 from pipeline.supports.floor import carried
 

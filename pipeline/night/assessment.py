@@ -15,7 +15,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
 from pipeline.analysis.house.matching import HouseRules
-from pipeline.analysis.likelihood.classes import computed, scenes_by_class
+from pipeline.analysis.likelihood.analyses import computed, scenes_by_class
 from pipeline.analysis.likelihood.sampling import ACTS
 from pipeline.analysis.likelihood.stripes import sampled_fragilities
 from pipeline.analysis.response_charts import ChartCache

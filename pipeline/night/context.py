@@ -10,14 +10,14 @@ from typing import Any
 from pipeline.analysis.context import Context, remembered
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.response_charts import ChartCache
-from pipeline.analysis.response_charts.histories import CommonHistories
+from pipeline.analysis.response_charts.charts import CommonHistories
 from pipeline.analysis.rule_table import RuleTable
 from pipeline.cache import Cache, key_of
 from pipeline.execute import Threads
 from pipeline.mitigate import MeasureCatalogue
 from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.models.band import sharing_spectra
-from pipeline.models.sharing import share_among
+from pipeline.models.common import share_among
 from pipeline.night.floors import Floor
 from pipeline.night.stocks import StockTerms
 from pipeline.records import (

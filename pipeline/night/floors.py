@@ -12,7 +12,7 @@ from pipeline.motions.manifest import GROUND_FLOOR, FloorTable
 from pipeline.motions.site import Level, Site, levels_at
 from pipeline.motions.summary import summaries
 from pipeline.records import Item, MotionSummary
-from pipeline.records.hazard import HazardCurve
+from pipeline.records.fragility import HazardCurve
 from pipeline.records.phrases import ON_GROUND
 from pipeline.settings import Floors, Settings, SettingsError
 

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline.analysis.classify import house_effect
 from pipeline.analysis.faults import apart
-from pipeline.analysis.house.effect import HouseEffect
-from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.house.matching import HouseEffect, HouseRules
 from pipeline.analysis.rule_table import RuleTable
 from pipeline.cache import HOUSE, Cache, CacheEntry, key_of
 from pipeline.collection.listing import Listed, Listing

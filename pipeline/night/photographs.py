@@ -11,7 +11,7 @@ from pipeline.images.limits import ImageLimits
 from pipeline.operations.workspace import Workspace
 from pipeline.quantities import counted
 from pipeline.records import Doubt, Photo, Progress
-from pipeline.records.reading import DOUBTFUL
+from pipeline.records.run import DOUBTFUL
 from pipeline.report.pages.reading import IMAGES
 
 

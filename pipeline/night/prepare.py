@@ -1,7 +1,14 @@
-"""Preparation of a run: motions and their pictures, rules, measures, and what is asked for."""
+"""Preparation of a run: motions and their pictures, rules, measures, and what is asked for.
+
+The pictures of the motions: made while the museum's records are read, which keeps one core busy and no more.
+
+They are kept in the cache by the content of their motion, and drawn again where that or the code is another.
+"""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import datetime
 from typing import Any, Literal
@@ -10,12 +17,16 @@ import numpy as np
 
 from pipeline import __version__
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.faults import sound, without_failing
+from pipeline.analysis.figures import chart_keys, draw
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.plan import Work, plan
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.response_charts.grouping import group_name, groups
 from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.stakes import VALUE_PER_C
+from pipeline.cache import PICTURES, Cache, CacheEntry, key_of
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.listing import Listing
 from pipeline.collection.object_index import ObjectIndex
@@ -25,22 +36,85 @@ from pipeline.mitigate import MeasureCatalogue
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL
 from pipeline.motions.site import Level, Site
 from pipeline.night.context import RunContext, motions_of
-from pipeline.night.figures import Pictures
 from pipeline.night.floors import floors_of, notes
 from pipeline.night.reading_summary import told
 from pipeline.night.source_state import house_digest, rules_digest, tables_digest
 from pipeline.night.stocks import StockTerms, told_floors
 from pipeline.night.unit_tasks import ChartTask
-from pipeline.operations.presentation import presentation, terms_of
+from pipeline.operations.report_status import presentation, terms_of
 from pipeline.operations.workspace import Workspace
 from pipeline.quantities import G
-from pipeline.records import Model, Progress, RunRecord, Scene
+from pipeline.records import Chart, Model, Motion, Progress, RunRecord, Scene
 from pipeline.records import phrases as say
 from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
-from pipeline.store.reuse import CODE, DISPLAY, HOUSE, HOUSE_RULES, KERNELS, LEVELS, RULES, TABLES
+from pipeline.settings import Settings
+from pipeline.store import codec
+from pipeline.store.sound import CODE, DISPLAY, HOUSE, HOUSE_RULES, KERNELS, LEVELS, RULES, TABLES
 from pipeline.verification import selftest, tradeoff
+
+_PICTURES = dict[str, Chart]
+"""All pictures of a motion, by key."""
+
+
+def _key(motion: Motion) -> str:
+    return key_of(chart_keys(motion), motion.hash, group=motion.hash)
+
+
+class Pictures:
+    """Makes the pictures of motions that are not kept, and finds those that are."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._cache = Cache(settings.kept)
+        # Not the charts of the verdicts, which are chosen once it is known what pays.
+        self._context = Context(Threads(settings.analysis.workers), charts=ChartCache(settings.kept))
+        self._hand = ThreadPoolExecutor(1)
+        self._stored: dict[str, Mapping[str, Chart]] = {}
+        self._begun: dict[str, Future[dict[str, Chart]]] = {}
+
+    def begin(self, motions: Sequence[Motion]) -> None:
+        """Begin with motions that will be asked for, one after the other, and return at once."""
+        new = [motion for motion in motions if motion.hash not in self._stored.keys() | self._begun.keys()]
+        for motion in new:
+            kept = self._cache.get(PICTURES, _key(motion))
+            if kept is None:
+                self._begun[motion.hash] = self._hand.submit(self._draw, motion)
+            else:
+                self._stored[motion.hash] = codec.of_json(_PICTURES, kept.said["pictures"])
+
+    def _draw(self, motion: Motion) -> dict[str, Chart]:
+        drawn = draw(motion, self._context)
+        self._cache.put(PICTURES, _key(motion), CacheEntry({"pictures": codec.to_json(_PICTURES, drawn)}))
+        return drawn
+
+    def of(self, motions: Sequence[Motion], progress: Progress) -> dict[str, Chart]:
+        """Return the pictures of motions, by key."""
+        self.begin(motions)
+        out: dict[str, Chart] = {}
+        for done, motion in enumerate(motions):
+            progress.step("charts", done, len(motions))
+            begun = self._begun.get(motion.hash)
+            out |= self._stored[motion.hash] if begun is None else begun.result()
+        progress.step("charts", len(motions), len(motions))
+        return out
+
+    def close(self) -> None:
+        """Leave what is not begun; a motion that is being worked on is finished, which takes seconds."""
+        self._hand.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def pictures(workspace: Workspace, site: Site) -> Iterator[Pictures]:
+    """Begin with the pictures of the ground's motions, which are wanted unless all galleries are on other floors."""
+    found = Pictures(workspace.settings)
+    try:
+        if not any("*" in galleries for galleries in workspace.settings.floors.root.values()):
+            found.begin([one.motion for level in site.levels for one in level.motions])
+        yield found
+    finally:
+        found.close()
+
 
 FRAGILE, SURVEYED = 1e8, 2e8
 """Objects on display times samples of all motions (of the longest, where joint samples tell the curves) up to which

@@ -15,10 +15,9 @@ from pipeline.collection.inventory.records import DamagedRecordError, repair
 from pipeline.collection.listing import Listing
 from pipeline.errors import DamageWarning, InputError
 from pipeline.motions.site import Site
-from pipeline.night.figures import Pictures, pictures
 from pipeline.night.importing import Imported, import_collection, source_of
 from pipeline.night.photographs import Photographs
-from pipeline.night.prepare import admit, run_context
+from pipeline.night.prepare import Pictures, admit, pictures, run_context
 from pipeline.night.publication import Publication
 from pipeline.night.reading_summary import doubts_of
 from pipeline.night.scheduler import Scheduler
@@ -26,8 +25,7 @@ from pipeline.night.source_state import unchanged
 from pipeline.night.staff import Staff
 from pipeline.night.stocks import keep_stocks
 from pipeline.operations.dry_run import DryRunWarning, rehearsed
-from pipeline.operations.presentation import terms_of
-from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, reports_lost, status
+from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, reports_lost, status, terms_of
 from pipeline.operations.run_summary import SUMMARY, Stores, Summary, summary_text
 from pipeline.operations.stopping import uninterrupted
 from pipeline.operations.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
@@ -42,9 +40,8 @@ from pipeline.report.pages.tallies import counts
 from pipeline.report.pages.views import State
 from pipeline.settings import Settings
 from pipeline.store.decisions import decisions_in_force
-from pipeline.store.reuse import SELECTION, whole_runs
 from pipeline.store.runs import changes_since, commit_run, mark_finished
-from pipeline.store.sound import comparable
+from pipeline.store.sound import SELECTION, comparable, whole_runs
 
 
 @dataclass(frozen=True)

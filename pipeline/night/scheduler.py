@@ -21,7 +21,6 @@ from pipeline.errors import DamageWarning
 from pipeline.execute.workers import WorkerPool
 from pipeline.night.context import RunContext
 from pipeline.night.house_effects import house_effects
-from pipeline.night.paging import PagePart, paged
 from pipeline.night.source_state import rules_digest, tables_digest
 from pipeline.night.staff import FEW, Staff
 from pipeline.night.unit_tasks import (
@@ -35,7 +34,7 @@ from pipeline.night.unit_tasks import (
     find_neighbours,
     furniture_of_units,
 )
-from pipeline.night.units import Decisions, PageUnits, UnitKeys
+from pipeline.night.units import Decisions, PagePart, PageUnits, UnitKeys, paged
 from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
 from pipeline.quantities import counted

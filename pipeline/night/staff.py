@@ -8,11 +8,28 @@ from dataclasses import replace
 from threading import Thread
 from typing import Self
 
-from pipeline.execute.memory import give_back
+from pipeline.analysis.model_runs import prepare
 from pipeline.execute.pool import WorkerPool, cores, pool
-from pipeline.night.compiling import compile_ahead, to_compile
+from pipeline.execute.workers import give_back
+from pipeline.kernels import is_kept
+from pipeline.models.standing import STANDING
+from pipeline.motions.synthesis import sine
 from pipeline.night.context import RunContext
 from pipeline.settings import Execution
+
+_KERNEL = "standing.standing_batch"
+"""Takes longest to compile, and all that stands needs it: two workers that meet it at once compile it both."""
+
+
+def to_compile() -> bool:
+    """Return whether there is something that a worker may as well compile at once."""
+    return not is_kept(_KERNEL)
+
+
+def compile_ahead(_shared: None, _task: None) -> None:
+    """Compile it, by running it once on next to nothing."""
+    STANDING.run(sine(1.0, 2.0, 1.0).excitation(0.0), prepare(STANDING, STANDING.trials.sample), 1, False)
+
 
 FEW = 200
 """Objects to be assessed for which other processes do not pay: each takes seconds to start, and does again some of what
@@ -23,7 +40,7 @@ SHOWN = 4_000
 """Objects to be shown for which other processes do not pay, unless they are there; and to be assessed, from which on
 they end before anything is shown: what each remembers is a gigabyte."""
 
-_MODULES = ("pipeline.night.unit_tasks", "pipeline.night.page_tasks")
+_MODULES = ("pipeline.night.unit_tasks", "pipeline.night.publication")
 """What a process that is started ahead makes ready meanwhile."""
 
 

@@ -9,8 +9,7 @@ from pathlib import Path
 
 from pipeline.analysis.stakes import counting
 from pipeline.cache import STOCKS, Cache
-from pipeline.event.capacities import FloorMotions, floors_of
-from pipeline.event.stock import Stock, stock_joined, stock_key, stock_of
+from pipeline.event.capacities import FloorMotions, Stock, floors_of, stock_joined, stock_key, stock_of
 from pipeline.motions.site import Level
 from pipeline.motions.summary import summaries
 from pipeline.operations.workspace import Workspace

@@ -15,7 +15,7 @@ from pipeline.analysis.classify import furniture_kind
 from pipeline.analysis.faults import Fault, each_apart, fault, unassessed
 from pipeline.analysis.neighbours import neighbours
 from pipeline.collection.object_index import read_packed
-from pipeline.execute.memory import give_back
+from pipeline.execute.workers import give_back
 from pipeline.night.assessment import Assessed, assess_objects, by_object, decided_class, left_aside
 from pipeline.records import Decision, Item, Motion
 from pipeline.store.pages import NEIGHBOURS, Members, found_of

@@ -12,7 +12,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import BaseModel, Field
 
-from pipeline.analysis.object_class import class_of
+from pipeline.analysis.classify import class_of
 from pipeline.collection.unit_audit import Suspicion
 from pipeline.quantities import LENGTHS, figures
 from pipeline.records import Item

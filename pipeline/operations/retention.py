@@ -13,9 +13,9 @@ from pipeline.operations.workspace import Workspace, locked, open_workspace
 from pipeline.resources import aside_of
 from pipeline.settings import Settings
 from pipeline.settings.operations import Retention
-from pipeline.store.pruning import remove_runs
-from pipeline.store.reuse import whole_runs
+from pipeline.store.pages import remove_runs
 from pipeline.store.runs import FINISHED, RunSummary, list_runs
+from pipeline.store.sound import whole_runs
 
 _RUN = r"(?P<run>(?P<day>\d{8})T(?P<time>\d{6})\.\d{3}-\d+)"
 _REPORT = re.compile(rf"{_RUN}(-\d+)?")

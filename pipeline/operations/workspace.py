@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from pipeline.settings import Settings
     from pipeline.tables.assumed import AssumedValues
 
+
 IMPORTS = "imports"
 """Folder beside the settings that holds the log of every import that changed something."""
 

@@ -1,6 +1,7 @@
 """The nouns that every floor shares: motions, items, scenes, models, findings, decisions, runs and their changes."""
 
 from pipeline.records.change import (
+    Brief,
     Cause,
     CauseKind,
     DecisionChange,
@@ -8,26 +9,37 @@ from pipeline.records.change import (
     InputChange,
     MotionChange,
     Move,
+    NewsKind,
+    ObjectChange,
     ObjectPlace,
+    Ruled,
     RunChanges,
+    Settled,
     VerdictChange,
 )
 from pipeline.records.contact_polygon import ContactPolygon
 from pipeline.records.decision import Basis, Decision, DecisionKind, DecisionStatus, in_force
 from pipeline.records.fragility import Fragility
 from pipeline.records.likelihood import Band, Harm, IfClass, Likelihood, Sampling
-from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figure, Model, Trials
 from pipeline.records.motion import Excitation, Motion, MotionSummary
-from pipeline.records.news import Brief, NewsKind, ObjectChange, Ruled, Settled
 from pipeline.records.numerics import Numerics
 from pipeline.records.part import Errors, Found, Outline, Page, Result, Tally, Urgency, Urgent
-from pipeline.records.photo import Photo
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
-from pipeline.records.reading import Account, Doubt
-from pipeline.records.result import Assessment, Check, Finding, Recommendation, Spacing, Verdict
-from pipeline.records.run import RunRecord
+from pipeline.records.result import (
+    Assessment,
+    Check,
+    Finding,
+    MeasurementRequest,
+    Recommendation,
+    Spacing,
+    State,
+    Verdict,
+    standing,
+    state_of,
+)
+from pipeline.records.run import Account, Doubt, Photo, RunRecord
 from pipeline.records.scene import (
     ITEM_FIELDS,
     SECTION_SHAPES,
@@ -47,7 +59,6 @@ from pipeline.records.scene import (
     times_too_thin,
     too_thin,
 )
-from pipeline.records.state import State, standing, state_of
 
 __all__ = [
     "ITEM_FIELDS",

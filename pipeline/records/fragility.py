@@ -1,10 +1,11 @@
-"""Fragility of an object: the shaking at which it fails, and how sure that is."""
+"""Fragility of an object, the shaking at which it fails, and hazard of a site, how often that is exceeded."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
 from math import erf, expm1, log, sqrt
+from typing import Literal
 
 HARM = "harm"
 """What a curve is of that counts whatever harms the object."""
@@ -160,3 +161,29 @@ class Fragility:
             if intensity <= high:
                 return before + (after - before) * log(intensity / low) / log(high / low)
         return shares[-1][1] if intensity == shares[-1][0] else None
+
+
+Measure = Literal["pga", "pgv"]
+"""Of intensity: the peak horizontal acceleration [m/s2], or velocity [m/s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class HazardCurve:
+    """Points of a hazard curve.
+
+    Attributes
+    ----------
+    measure : {"pga", "pgv"}
+        Of its intensities.
+    intensity : tuple of float
+        Rising, m/s2 or m/s.
+    rate : tuple of float
+        At which each is exceeded, falling, 1/year.
+    file : str
+        Name of the file that tells it.
+    """
+
+    measure: Measure
+    intensity: tuple[float, ...]
+    rate: tuple[float, ...]
+    file: str = ""

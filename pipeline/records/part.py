@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from pipeline.records.change import Brief
 from pipeline.records.fragility import Fragility
 from pipeline.records.likelihood import Likelihood
-from pipeline.records.measurement_request import MeasurementRequest
-from pipeline.records.news import Brief
-from pipeline.records.result import Assessment, Finding, Recommendation, Spacing
+from pipeline.records.result import Assessment, Finding, MeasurementRequest, Recommendation, Spacing
 from pipeline.records.scene import Anchorage, Estimate, Furniture, Hanging, Mount, Origin, Support
 
 

@@ -1,13 +1,13 @@
-"""Findings and advice of a run."""
+"""Findings and advice of a run, what it asks to be measured, and where each object stands by them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
 from pipeline.records.fragility import Fragility
-from pipeline.records.likelihood import Likelihood
+from pipeline.records.likelihood import Band, Likelihood
 from pipeline.records.picture import Mark
 from pipeline.records.scene import Origin, Scene
 
@@ -272,3 +272,110 @@ class Spacing:
     decided_by: str
     motion: str = ""
     note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasurementRequest:
+    """A quantity of one object that nobody recorded, and what recording it would do.
+
+    Attributes
+    ----------
+    object_number, gallery, title : str
+        The object.
+    field : str
+        Of the object record, such as friction.
+    unit : str
+        Of the values.
+    low, best, high : float or None
+        What is assumed instead, in ``unit``; None where nothing can be assumed.
+    reason : str
+        What is assumed and by which source, or that it is not recorded.
+    open : int
+        Verdicts that are undetermined now and that it takes part in, or levels at which it may change what is decided.
+    settles : float
+        How many of them it would settle: of verdicts the mean over its being measured as low, best and high.
+    unlocks : int
+        Models that cannot be run without it.
+    drawn : bool
+        Whether ``settles`` is the probability that something else is decided once it is measured, from joint samples.
+    """
+
+    object_number: str
+    gallery: str
+    title: str
+    field: str
+    unit: str
+    low: float | None
+    best: float | None
+    high: float | None
+    reason: str
+    open: int
+    settles: float
+    unlocks: int
+    drawn: bool = False
+
+    @property
+    def gain(self) -> float:
+        """What measuring it brings: what it would settle, and models that it would make possible."""
+        return self.settles + self.unlocks
+
+    @property
+    def settles_nothing(self) -> bool:
+        """Whether measuring it alone would settle nothing, wherever in its range it lies."""
+        return not self.gain
+
+
+class State(StrEnum):
+    """Where an object stands, in the order in which the report lists it.
+
+    act: harm is possible or likelier; watch: it is unlikely; unknown: nobody can say; fine: harm is very unlikely, or
+    excluded; aside: not on display, and not assessed.
+    """
+
+    ACT = "act"
+    WATCH = "watch"
+    UNKNOWN = "unknown"
+    FINE = "fine"
+    ASIDE = "aside"
+
+
+_STATES = {Band.VERY_UNLIKELY: State.FINE, Band.UNLIKELY: State.WATCH}
+
+
+def state_of(assessment: Assessment) -> State:
+    """Return where an object stands; see `standing`."""
+    return standing(
+        assessment.findings, assessment.likelihood, complete=not assessment.scene.missing, aside=assessment.aside
+    )
+
+
+def standing(findings: Sequence[Finding], found: Likelihood | None, *, complete: bool, aside: bool) -> State:
+    """Return where an object stands: by how likely harm is, or where that was not asked for by its verdicts.
+
+    A proof beats a probability: what passes in all its models, whatever its uncertain inputs are, is fine, unless the
+    scatter of the models, which no verdict counts, makes harm possible.  It holds of the class that was run: of what
+    may be of another one the probability decides.  What has no verdict at all never is fine.
+
+    Parameters
+    ----------
+    findings : sequence of Finding
+        About the object.
+    found : Likelihood or None
+        How likely it comes to harm at the level that decides; None where nobody asked.
+    complete : bool
+        Whether nothing is missing that its models need.
+    aside : bool
+        Whether it was left aside.
+    """
+    if aside:
+        return State.ASIDE
+    verdicts = {f.verdict for f in findings}
+    assessed = bool(findings) and complete
+    state = State.FINE if found is None else _STATES.get(found.band, State.ACT)
+    proved = assessed and verdicts == {Verdict.PASS} and (found is None or not found.classes)
+    if proved and state is not State.ACT:
+        return State.FINE
+    if found is None:
+        state = State.ACT if Verdict.FAIL in verdicts else State.WATCH
+    # Where some of it could not be run, only what is bad is known.
+    return state if assessed or (verdicts and state is State.ACT) else State.UNKNOWN

@@ -1,7 +1,7 @@
 """A run's record becomes a report: pages for people, files for programs, and one lasting name for the newest."""
 
 from pipeline.report.errors import ReportError
-from pipeline.report.files.publish import lasting_name, publish
+from pipeline.report.files.manifest import lasting_name, publish
 from pipeline.report.language import Language, language
 from pipeline.report.render import render
 from pipeline.report.units import Units

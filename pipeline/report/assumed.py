@@ -9,14 +9,12 @@ from functools import cache
 
 from pipeline.analysis.classify import object_classes
 from pipeline.quantities import LENGTHS
-from pipeline.records.chart_words import CHART_WORDS
 from pipeline.records.phrase import Clause, Number
-from pipeline.records.phrases import PHRASES
-from pipeline.records.run_sentences import SENTENCES
-from pipeline.report.by_hand import inches
+from pipeline.records.phrases import PHRASES, SENTENCES
+from pipeline.records.picture import CHART_WORDS
 from pipeline.report.language import _, local, parted, said
 from pipeline.report.text import bare
-from pipeline.report.units import Units
+from pipeline.report.units import Units, inches
 
 TABLES = tuple(
     f"{name}.csv"

@@ -6,9 +6,8 @@ from dataclasses import fields
 from io import TextIOWrapper
 from typing import IO
 
-from pipeline.analysis.classify import object_classes
+from pipeline.analysis.classify import WEIGHED, object_classes
 from pipeline.analysis.furniture import DAMPING, FREQUENCY, LEVEL_ERROR, WHAT_HANGS
-from pipeline.analysis.object_class import WEIGHED
 from pipeline.analysis.section import OF_CLASS
 from pipeline.analysis.sizes import SIZES
 from pipeline.analysis.usual import ON_ANY
@@ -36,9 +35,8 @@ from pipeline.mitigate.saying import (
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import UNTOLD_ISOLATOR, Anchorage, ChartFigure, Item, Support
-from pipeline.records.chart_words import CHART_WORDS
-from pipeline.records.phrases import PHRASES
-from pipeline.records.run_sentences import SENTENCES
+from pipeline.records.phrases import PHRASES, SENTENCES
+from pipeline.records.picture import CHART_WORDS
 from pipeline.report.assumed import SOURCES, TABLES
 from pipeline.report.text import bare
 from pipeline.tables import table

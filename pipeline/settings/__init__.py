@@ -15,10 +15,16 @@ from pipeline.analysis.house.rule import HouseRule
 from pipeline.errors import InputError, mends_toml
 from pipeline.records import Numerics, Sampling
 from pipeline.resources import small_text
-from pipeline.settings.operations import Hooks, LimitSettings, Logs, Retention
+from pipeline.settings.operations import (
+    Hooks,
+    ImageSettings,
+    LimitSettings,
+    Logs,
+    Retention,
+    ServeSettings,
+    SurveySettings,
+)
 from pipeline.settings.operations import SettingsPart as _Part
-from pipeline.settings.photographs import ImageSettings, SurveySettings
-from pipeline.settings.serve import ServeSettings
 
 DATABASE_VARIABLE = "KOUROS_DATABASE"
 """Environment variable that names the database, with its password, in place of the file's."""

@@ -13,7 +13,7 @@ from tomlkit.items import Table
 _WIDTH = 118
 
 
-def commented(model: type[BaseModel], given: Mapping[tuple[str, str], object], head: str, *, place: str = "") -> str:
+def commented(model: type[BaseModel], given: Mapping[tuple[str, str], object], head: str) -> str:
     """Return a TOML file with the defaults of a model, its descriptions as comments.
 
     Parameters
@@ -26,8 +26,6 @@ def commented(model: type[BaseModel], given: Mapping[tuple[str, str], object], h
         Values in place of defaults, by table and key.
     head : str
         The comment above all.
-    place : str
-        What stands in front of the names of tables.
 
     Returns
     -------
@@ -41,7 +39,7 @@ def commented(model: type[BaseModel], given: Mapping[tuple[str, str], object], h
         if isinstance(field.default, BaseModel):
             document.add(tomlkit.nl())
             mine = {key: value for (of, key), value in given.items() if of == name}
-            document.add(name, _table(f"{place}{name}", field, mine))
+            document.add(name, _table(name, field, mine))
         elif field.examples:
             # A list of tables that is empty cannot be written in a way in which one can be added below.
             document.add(tomlkit.nl())

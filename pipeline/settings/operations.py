@@ -1,5 +1,7 @@
-"""The settings of every night's operation: whom to tell, what to log, how long to keep, how much to accept."""
+"""The settings of operation: whom to tell, what to log and keep, how much to accept; photographs; the desk."""
 
+import re
+from ipaddress import ip_network
 from typing import Literal
 from urllib.parse import urlsplit
 
@@ -178,3 +180,139 @@ class LimitSettings(SettingsPart):
     seconds: float = Field(
         default=3600.0, gt=0.0, le=86_400.0, description="seconds that reading the collection may take"
     )
+
+
+_HOST = re.compile(
+    r"(?:\*\.(?=[^:]*\.))?(?:[^\W_](?:[\w-]*[^\W_])?)(?:\.[^\W_](?:[\w-]*[^\W_])?)*(?::\d{1,5})?|\[[0-9a-fA-F:]+\](?::\d{1,5})?"
+)
+
+
+class ImageSettings(SettingsPart):
+    """Photographs of the objects: where they may be, and how much a night spends on them."""
+
+    folder: str = Field(
+        default="", description="the folder below which the files are that the records name; empty: files are not shown"
+    )
+    hosts: tuple[str, ...] = Field(
+        default=(),
+        max_length=100,
+        description='the hosts that may be asked, such as "images.museum.org", "localhost:8182" or "*.museum.org" (a '
+        "star allows no address of a private network); none: nothing is fetched",
+    )
+    pixels: int = Field(default=240, ge=64, le=1024, description="of the longer side of a thumbnail")
+    megabytes: float = Field(default=30.0, gt=0.0, le=500.0, description="of a photograph at most")
+    megapixels: float = Field(default=100.0, gt=0.0, le=1000.0, description="of a photograph at most")
+    seconds: float = Field(default=10.0, gt=0.0, le=300.0, description="for one photograph at most")
+    minutes: float = Field(
+        default=30.0, gt=0.0, le=1440.0, description="for all new ones of a night; the others wait for the next one"
+    )
+    ask_again_days: float = Field(
+        default=30.0, ge=0.0, le=3650.0, description="after which a host is asked whether a photograph has changed"
+    )
+
+    @field_validator("hosts")
+    @classmethod
+    def _hosts(cls, hosts: tuple[str, ...]) -> tuple[str, ...]:
+        for host in hosts:
+            if not _HOST.fullmatch(host):
+                raise InputError(
+                    f"{host!r} is no host: write its name alone, with its port where that is unusual, as "
+                    "images.museum.org or localhost:8182"
+                )
+        return hosts
+
+
+class SurveySettings(SettingsPart):
+    """Workbooks of the survey that come back filled in."""
+
+    inbox: str = Field(
+        default="",
+        description="a folder: what is put into it is taken up by the next night, as `kouros import --sheet` would; "
+        "empty: none",
+    )
+
+
+LOCAL = frozenset({"127.0.0.1", "::1", "localhost"})
+"""Hosts that this machine alone reaches."""
+
+
+class ServeSettings(SettingsPart):
+    """The desk, `kouros serve`: the report live, and what people say to it.  It needs the extra `serve`."""
+
+    host: str = Field(
+        default="127.0.0.1",
+        pattern=r"^[A-Za-z0-9.:-]{1,255}$",
+        description="the address it listens at; another than 127.0.0.1 needs an identity",
+    )
+    port: int = Field(default=8750, ge=0, le=65535, description="its port; 0: any that is free")
+    identity: Literal["none", "header", "accounts"] = Field(
+        default="none",
+        description='who somebody is: "none", whoever sits at this machine; "header", whom your proxy names; '
+        '"accounts", who signs in with a password of `kouros serve --add-user`',
+    )
+    header: str = Field(
+        default="X-Remote-User", pattern=r"^[A-Za-z][A-Za-z0-9-]{0,63}$", description="the proxy's header with the name"
+    )
+    trusted: tuple[str, ...] = Field(
+        default=(), description='addresses or networks of the proxies, "10.0.0.5"; nobody else is answered'
+    )
+    editors: tuple[str, ...] = Field(
+        default=(),
+        max_length=10_000,
+        description="with a header: names of those who may write; the others read",
+    )
+    addresses: tuple[str, ...] = Field(
+        default=(), description='how browsers reach it, "https://kouros.museum.example"; other names are refused'
+    )
+    session_hours: float = Field(default=12.0, gt=0.0, le=720.0, description="hours until one must sign in again")
+    upload_megabytes: float = Field(default=15.0, gt=0.0, le=100.0, description="the largest photograph that is taken")
+
+    @field_validator("trusted")
+    @classmethod
+    def _networks(cls, given: tuple[str, ...]) -> tuple[str, ...]:
+        for one in given:
+            try:
+                ip_network(one)
+            except ValueError as problem:
+                raise InputError(
+                    f"{one!r} is no address and no network ({problem}); write 10.0.0.5 or 10.0.0.0/24"
+                ) from problem
+        return given
+
+    @field_validator("addresses")
+    @classmethod
+    def _addresses(cls, given: tuple[str, ...]) -> tuple[str, ...]:
+        for one in given:
+            parts = urlsplit(one)
+            plain = parts.scheme in ("http", "https") and parts.hostname and not (parts.username or parts.password)
+            if not plain or parts.path not in ("", "/") or parts.query or parts.fragment:
+                raise InputError(f"{one!r} is no address of a site; write https://kouros.museum.example")
+        return tuple(one.rstrip("/") for one in given)
+
+    @model_validator(mode="after")
+    def _whole(self) -> "ServeSettings":
+        if self.identity == "header" and not self.trusted:
+            raise InputError('identity = "header" needs trusted: the addresses of the proxies that may name people')
+        return self
+
+    def require_safe(self) -> None:
+        """Refuse to be reached from elsewhere where nobody knows who somebody is.
+
+        Raises
+        ------
+        InputError
+            Naming the setting and the remedy.
+        """
+        if self.host in LOCAL or (self.host.startswith("127.") and self.host.replace(".", "").isdigit()):
+            return
+        if self.identity == "none":
+            raise InputError(
+                f"[serve] host {self.host!r} would let anybody on the network decide in the museum's name: set "
+                '[serve] identity to "accounts" (and make them with `kouros serve --add-user NAME --role editor`) or '
+                'to "header" behind your proxy; or leave host at 127.0.0.1'
+            )
+        if not self.addresses:
+            raise InputError(
+                f"[serve] host is {self.host!r}, and [serve] addresses names no site: write how browsers reach it, "
+                'such as addresses = ["https://kouros.museum.example"]'
+            )

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, get_type_hints
 
 from sqlalchemy import Connection, select
 
-from pipeline.analysis.house.effect import rests_on
+from pipeline.analysis.house.matching import rests_on
 from pipeline.records import (
     Decision,
     DecisionChange,
@@ -25,11 +25,10 @@ from pipeline.records import (
     VerdictChange,
 )
 from pipeline.store import codec
-from pipeline.store.causes import Causes, MotionKey
-from pipeline.store.news import Seen, news
+from pipeline.store.news import Causes, MotionKey, Seen, news
 from pipeline.store.pages import found_of, load_members
 from pipeline.store.results import DamagedRunError, Digests, fetch, outline_of, outlines
-from pipeline.store.reuse import CODE, DISPLAY, HOUSE, HOUSE_RULES, KERNELS, LEVELS, RULES, TABLES
+from pipeline.store.sound import CODE, DISPLAY, HOUSE, HOUSE_RULES, KERNELS, LEVELS, RULES, TABLES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
 

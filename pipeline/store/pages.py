@@ -1,22 +1,22 @@
-"""The objects of a page in the database, under a digest of them: their records as they were, and where results are."""
+"""The objects of a page in the database, under a digest of them, and how runs that nobody needs leave it."""
 
 import json
 import zlib
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from sqlalchemy import Connection, Engine, insert, select, update
+from sqlalchemy import Connection, Engine, delete, insert, select, update
 
 from pipeline.analysis.faults import with_fault
 from pipeline.analysis.survey import in_order
 from pipeline.collection.object_index import read_packed
-from pipeline.collection.sealing import damaged_rows, seal, sealed, sound_rows
+from pipeline.collection.sealing import seal, sealed, sound_rows
 from pipeline.records import ITEM_FIELDS, Found, Item, MeasurementRequest, Page, Result
 from pipeline.store.codec import StoreError
-from pipeline.store.results import DamagedRunError, Made, decode, decode_spacings, fetch, made_of, of_object
-from pipeline.store.tables import PAGE
+from pipeline.store.results import DamagedRunError, Made, decode, decode_spacings, fetch, forget, made_of, of_object
+from pipeline.store.tables import PAGE, RESULT, RUN, RUN_PAGE
 
 NEIGHBOURS = "how near its neighbours come is not known"
 
@@ -222,12 +222,6 @@ def load_page(database: Engine | Connection, key: str) -> Found:
     return found_of(members, {key: one.found for key, one in kept.items()})
 
 
-def damaged_pages(engine: Engine) -> Iterator[str]:
-    """Yield the keys of all pages that are not what was written."""
-    with engine.connect() as connection:
-        yield from damaged_rows(connection, PAGE)
-
-
 Places = Mapping[str, tuple[str, int, str]]
 """By object number: the key of its unit's results, which of these it has, and the digest of its record."""
 
@@ -274,3 +268,26 @@ def _wishes(result: Result, item: Item) -> list[MeasurementRequest]:
     """Return what is worth measuring on an object, with its name."""
     named = (item.object_number, item.gallery, item.title)
     return [replace(one, object_number=named[0], gallery=named[1], title=named[2]) for one in result.wishes or ()]
+
+
+def remove_runs(engine: Engine, run_ids: Iterable[str]) -> None:
+    """Remove runs, each in a transaction of its own, and then the pages and the results that no run holds.
+
+    run_ids : one that is not there is passed by
+
+    What an interrupted run found belongs to no run, and is lost here: a good run came after it.  The space is used
+    again by later runs; an SQLite file does not become smaller by itself.
+    """
+    for run_id in run_ids:
+        with engine.begin() as connection:
+            connection.execute(delete(RUN).where(RUN.c.run_id == run_id))
+    with engine.begin() as connection:
+        connection.execute(delete(PAGE).where(PAGE.c.key.not_in(select(RUN_PAGE.c.key))))
+    used: set[str] = set()
+    with engine.connect() as connection:
+        # Page by page: a page names a thousand results.
+        for key in connection.execute(select(PAGE.c.key)).scalars().all():
+            members, _ = fetch_members(connection, key)
+            used.update([] if members is None else members.wanted)
+        there = set(connection.execute(select(RESULT.c.key)).scalars())
+    forget(engine, there - used)

@@ -29,9 +29,7 @@ from pipeline.records import (
     standing,
 )
 from pipeline.store import codec
-from pipeline.store.codec import StoreError
-from pipeline.store.compression import deflated, inflated
-from pipeline.store.db_errors import explained
+from pipeline.store.codec import StoreError, deflated, explained, inflated
 from pipeline.store.tables import RESULT
 
 NAMED = 500

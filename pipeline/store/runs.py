@@ -15,8 +15,7 @@ from pipeline.errors import DamageWarning
 from pipeline.records import Chart, DecisionStatus, MotionSummary, Page, RunChanges, RunRecord
 from pipeline.store import codec
 from pipeline.store.changes import changes
-from pipeline.store.codec import StoreError
-from pipeline.store.db_errors import explained, where_is
+from pipeline.store.codec import StoreError, explained, where_is
 from pipeline.store.pages import add_pages, load_page
 from pipeline.store.results import DamagedRunError
 from pipeline.store.sound import damaged_heads, require_run, runs_but

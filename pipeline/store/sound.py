@@ -1,4 +1,4 @@
-"""Soundness of runs: one that is not as it was written is no part of any list, and never compared."""
+"""What an earlier run was, whole or of a part, and whether it is sound: one that is not is never compared."""
 
 import warnings
 
@@ -10,6 +10,7 @@ from pipeline.store.results import DamagedRunError
 from pipeline.store.tables import RUN, RUN_CHART, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
 _PARTS = (RUN_MOTION, RUN_DECISION, RUN_CHART, RUN_PAGE)
+
 
 _COUNTED = {"motions": RUN_MOTION, "charts": RUN_CHART, "pages": RUN_PAGE}
 """Tables of which a run knows how many rows it has."""
@@ -61,3 +62,47 @@ def comparable(engine: Engine, run_ids: list[str]) -> str | None:
             else:
                 return run_id
     return None
+
+
+KERNELS = "kernels"
+"""Key of a run's settings under which the version of the compiled models is kept."""
+
+
+CODE = "code"
+"""The same of the version of all code and tables that verdicts rest on besides the kernels."""
+
+
+RULES = "rules"
+"""Key of a run's settings under which the hash of the museum's own rules of classification is kept; "" for none."""
+
+
+TABLES = "tables"
+"""The same of the hashes of its own rows of what is assumed, by table."""
+
+
+HOUSE = "house"
+
+
+HOUSE_RULES = "house_rules"
+"""The same of its house rules, in one hash."""
+
+
+LEVELS = "levels"
+"""Key of a run's settings under which it is kept how each level combines its motions."""
+
+
+DISPLAY = "display"
+"""Key of a run's settings under which it is kept whether what is not on display was assessed."""
+
+
+SELECTION = "selection"
+"""Key of a run's settings that is true for a run of a part of the collection."""
+
+
+def whole_runs(engine: Engine) -> list[str]:
+    """Return the finished runs of the whole collection, the newest first."""
+    with engine.connect() as connection:
+        sound = runs_but(damaged_heads(connection))
+        finished = select(RUN.c.run_id, RUN.c.settings).where(RUN.c.status == "finished", sound)
+        finished = finished.order_by(RUN.c.started.desc())
+        return [row.run_id for row in connection.execute(finished) if not row.settings.get(SELECTION)]

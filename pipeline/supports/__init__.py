@@ -13,8 +13,7 @@ from pipeline.models.rotational_isolator import ROTATIONAL_ISOLATOR
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Excitation, Model, Motion
 from pipeline.supports.floor import carried
-from pipeline.supports.polygon import conserving, resampled
-from pipeline.supports.refining import TRANSMITTED, refined
+from pipeline.supports.refining import TRANSMITTED, conserving, refined, resampled
 
 __all__ = ["SUPPORTS", "TRANSMITTED", "SupportModel", "refined", "resampled", "support_named"]
 

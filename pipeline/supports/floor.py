@@ -12,7 +12,7 @@ from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.quantities import Array
 from pipeline.records import Motion
-from pipeline.supports.polygon import resampled
+from pipeline.supports.refining import resampled
 
 MODE_POINTS = 20
 """Corners of a computed floor's polygon in one period of its highest mode: a peak between two is 1.2 % low at most."""

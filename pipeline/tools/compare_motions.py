@@ -9,8 +9,7 @@ from pathlib import Path
 
 from pipeline.collection.database import Database, open_database
 from pipeline.motions.site import Level, Site, read_site, with_corner
-from pipeline.night.figures import pictures
-from pipeline.night.prepare import admit, run_context
+from pipeline.night.prepare import admit, pictures, run_context
 from pipeline.night.publication import Publication
 from pipeline.night.scheduler import Scheduler
 from pipeline.night.staff import Staff
@@ -20,8 +19,8 @@ from pipeline.records import Progress, VerdictChange
 from pipeline.settings import Settings
 from pipeline.store import migrate
 from pipeline.store.decisions import decisions_in_force
-from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import commit_run, compare_runs
+from pipeline.store.sound import whole_runs
 
 
 @dataclass(frozen=True)

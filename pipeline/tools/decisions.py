@@ -19,7 +19,7 @@ from pipeline.operations.workspace import UsageError, Workspace, near, site_fold
 from pipeline.quantities import Quantity
 from pipeline.records import Basis, Decision, DecisionKind, Verdict, in_force
 from pipeline.store.decisions import add_decision, looked_at, read_decisions
-from pipeline.store.reuse import whole_runs
+from pipeline.store.sound import whole_runs
 
 WHO_VARIABLE = "KOUROS_WHO"
 """Environment variable with the name of the person who decides, where it is not that of the account."""

@@ -23,7 +23,7 @@ from pipeline.quantities import counted
 from pipeline.records import Item
 from pipeline.settings import Settings, load_settings
 from pipeline.tools import doctor_checks as checkup
-from pipeline.tools.house_check import look_at_house_rules
+from pipeline.tools.doctor_checks import look_at_house_rules
 
 LONGEST = 10.0
 """Seconds that objects are tried for: some 100,000 of them."""

@@ -1,21 +1,34 @@
-"""Checks of a doctor besides the inputs: the last good night, the lock, room, permissions, hooks, compiled code."""
+"""Checks of a doctor besides the inputs: the last night, the machine, the house rules, and all that is kept."""
 
 import os
 import shutil
 import warnings
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from pipeline.analysis.house.matching import HouseEffect, HouseRules
+from pipeline.cache import Cache
+from pipeline.collection.database import database_url, open_for_reading, verify_file
+from pipeline.errors import KourosError
 from pipeline.extensions import ExtensionWarning, extension_versions
 from pipeline.models import MODELS
+from pipeline.night.house_effects import each_effect
 from pipeline.operations.hooks import look, named
 from pipeline.operations.report_status import FAILED, GOOD, RUNNING, last_good, reports_lost, status
-from pipeline.operations.workspace import LOCK, LockedError, Workspace, locked
+from pipeline.operations.secrets import hider
+from pipeline.operations.workspace import LOCK, LockedError, Workspace, locked, near
 from pipeline.quantities import counted
+from pipeline.records import Item, Progress
+from pipeline.report.files.manifest import verify_report
 from pipeline.settings import Settings
-from pipeline.store.reuse import whole_runs
+from pipeline.store import migrate
+from pipeline.store.decisions import decisions_in_force
 from pipeline.store.runs import list_runs
+from pipeline.store.sound import whole_runs
+from pipeline.store.verifying import tables, verify_columns, verify_table
 
 SPACE = 1_000_000_000
 """Bytes of free disk below which a night may fail to write, whatever its last report weighed."""
@@ -194,3 +207,150 @@ def _clock(workspace: Workspace) -> Found:
         told = f"the last run is of {runs[0].started}, later than now ({now.isoformat()})"
         return "wrong", f"{told}; set the clock, or where it is right now: run, then `kouros prune --ahead`"
     return "ok", now.isoformat(timespec="seconds")
+
+
+@dataclass(frozen=True)
+class Rot:
+    """Something kept that is not what was written.
+
+    Attributes
+    ----------
+    what
+        "database", "cache" or "report".
+    where
+        The file, or the table and the row.
+    why
+        What is wrong with it; "" where the seal says no more than that.
+    remedy
+        What mends it.
+    """
+
+    what: str
+    where: str
+    why: str
+    remedy: str
+
+
+def examine(settings: Settings, progress: Progress) -> Iterator[Rot]:
+    """Compare everything kept with what was written.
+
+    Parameters
+    ----------
+    settings : Settings
+        Of the museum.
+    progress : Progress
+        Told how far it is.
+
+    Yields
+    ------
+    Rot
+        For each thing that is damaged, as it is found.
+
+    Raises
+    ------
+    StoreError
+        For a database of another version of Kouros, which is to be brought up to date first.
+    """
+    yield from _database(settings, progress)
+    progress.step("cache", 0, 1)
+    for damage in Cache(settings.kept).verify():
+        yield Rot("cache", str(damage.file), damage.why, "the next night that wants it makes it again")
+    progress.step("cache", 1, 1)
+    latest = settings.path(settings.report.folder) / "latest"
+    if latest.exists():
+        progress.step("report", 0, 1)
+        for file, why in verify_report(latest.resolve()):
+            yield Rot("report", str(file), why, "the next night makes it again")
+        progress.step("report", 1, 1)
+
+
+def _database(settings: Settings, progress: Progress) -> Iterator[Rot]:
+    url = database_url(settings.database)
+    hide, shown = hider(settings), url.render_as_string(hide_password=True)
+    if url.get_backend_name() == "sqlite" and not Path(str(url.database)).is_file():
+        return
+    engine = open_for_reading(url)
+    looks = ["file", "columns", *tables()]
+    try:
+        migrate.require_head(engine)
+        for at, look in enumerate(looks):
+            progress.step("database", at, len(looks))
+            if look == "file":
+                verify_file(engine, whole=True)
+            else:
+                for one in verify_columns(engine) if look == "columns" else verify_table(engine, look):
+                    yield Rot("database", f"{shown}, table {one.table}: {one.row}", "", one.remedy)
+        progress.step("database", len(looks), len(looks))
+    except KourosError as problem:
+        if type(problem) is migrate.OtherVersionError:
+            raise
+        yield Rot("database", shown, hide(str(problem)), "restore it from a backup, and see whether the disk is sound")
+
+
+_MOST = 3
+"""Objects that are named of those of which the same is said."""
+
+
+def look_at_house_rules(workspace: Workspace, inventory: Sequence[Item]) -> tuple[str, str]:
+    """Ask the house rules about all objects.
+
+    Parameters
+    ----------
+    workspace : Workspace
+        Whose rules are asked.
+    inventory : sequence of Item
+        All objects.
+
+    Returns
+    -------
+    state : {"ok", "warning", "wrong"}
+        Wrong where rules tie; a warning where one matches nothing, is never taken or contradicts a record.
+    message : str
+        What each rule matches, and what is doubtful.
+    """
+    house = workspace.house
+    if house is None:
+        return "ok", "none"
+    effects = _effects(workspace, house, inventory)
+    matched = Counter(at for _, effect in effects for at in effect.matched)
+    used = Counter(at for _, effect in effects for at in effect.used)
+    told = [f"{house.named(at)} matches {counted(times, 'object')}" for at, times in sorted(matched.items())]
+    doubts = [_idle(house, at, matched[at], inventory) for at, rule in enumerate(house.rules)
+              if rule.holds and not used[at]]  # fmt: skip
+    against: dict[int, list[str]] = {}
+    ties: dict[str, list[str]] = {}
+    for item, effect in effects:
+        for at, words in effect.overruled:
+            against.setdefault(at, []).append(f"{item.object_number}: {words}")
+        for words in effect.ties:
+            ties.setdefault(words, []).append(item.object_number)
+    doubts += [
+        f"{house.named(at)} contradicts the record of {counted(len(some), 'object')}: {_listed(some)}"
+        for at, some in sorted(against.items())
+    ]
+    wrong = [
+        f"{words} ({counted(len(some), 'object')}: {_listed(some)}); name more in one of them, or take one out"
+        for words, some in ties.items()
+    ]
+    state = "wrong" if wrong else "warning" if doubts else "ok"
+    return state, "; ".join([*wrong, *doubts, *told])
+
+
+def _effects(workspace: Workspace, house: HouseRules, inventory: Sequence[Item]) -> list[tuple[Item, HouseEffect]]:
+    came = each_effect(house, inventory, workspace.rules, decisions_in_force(workspace.engine))
+    return [(item, one) for item, one in zip(inventory, came, strict=True) if isinstance(one, HouseEffect)]
+
+
+def _idle(house: HouseRules, at: int, matched: int, inventory: Sequence[Item]) -> str:
+    if matched:
+        why = "records or other rules say it, or it is of what is held in another way"
+        return f"nothing of {house.named(at)} is taken: {why}"
+    there = {item.gallery for item in inventory}
+    strange = [name for name in house.rules[at].gallery if name not in there]
+    hint = f": there is no gallery {strange[0]!r}{near(strange[0], there)}" if strange else ""
+    return f"{house.named(at)} matches nothing{hint}"
+
+
+def _listed(some: Sequence[str]) -> str:
+    more = f" and {len(some) - _MOST:,} more" if len(some) > _MOST else ""
+    return ", ".join(some[:_MOST]) + more

@@ -12,14 +12,13 @@ from shutil import rmtree
 from typing import Any
 
 from pipeline.event.answer import Answer, answered
+from pipeline.event.capacities import Stock
 from pipeline.event.message import FIRST_SIGMA, ReportedEarthquake, SiteShaking
-from pipeline.event.own_record import OwnRecord, own_record
-from pipeline.event.reading import EventFiles, read_files, with_more
+from pipeline.event.reading import EventFiles, OwnRecord, own_record, read_files, with_more
 from pipeline.event.reports import conditioned
-from pipeline.event.stock import Stock
 from pipeline.motions.manifest import load_manifest
 from pipeline.night.stocks import run_stock, stock_terms
-from pipeline.operations.presentation import presentation
+from pipeline.operations.report_status import presentation
 from pipeline.operations.workspace import UsageError, Workspace, folder_of_site
 from pipeline.quantities import G
 from pipeline.records import Page, RunRecord
@@ -30,19 +29,22 @@ from pipeline.report.text import clean
 from pipeline.resources import aside_of, sweep
 from pipeline.store.codec import StoreError
 from pipeline.store.event_reports import event_reports
-from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import load_head
+from pipeline.store.sound import whole_runs
 from pipeline.tools.event_folders import (
     CHANCES,
     EVENTS,
     EventQuestion,
+    ReportsTaken,
     event_folder,
+    found_states,
     kept_document,
     kept_events,
+    known_objects,
     rank_shown,
     shown_name,
+    take_reports,
 )
-from pipeline.tools.event_reports import ReportsTaken, found_states, known_objects, take_reports
 from pipeline.tools.event_waveforms import Modelled, modelled
 
 OWN, TYPED = 5, 4

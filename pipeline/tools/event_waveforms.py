@@ -13,10 +13,9 @@ import numpy as np
 
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.event.answer import Answer, chances, normals, placed
-from pipeline.event.capacities import KINDS
+from pipeline.event.capacities import KINDS, Stock
 from pipeline.event.message import ReportedEarthquake, SiteShaking
-from pipeline.event.own_record import OwnRecord
-from pipeline.event.stock import Stock
+from pipeline.event.reading import OwnRecord
 from pipeline.motions.record import Record
 from pipeline.motions.site import Level, Site, SiteMotion
 from pipeline.night.waveforms import Shaken, shaken_by, under

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pipeline.operations.presentation import presentation
+from pipeline.operations.report_status import presentation
 from pipeline.operations.workspace import UsageError, Workspace, near
 from pipeline.planning.choice import EffortLimits
 from pipeline.planning.plan import ErrandPlan
@@ -15,8 +15,8 @@ from pipeline.report.pages.errand_views import plan_page
 from pipeline.resources import replacing
 from pipeline.store.codec import StoreError
 from pipeline.store.pages import load_page
-from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import load_head
+from pipeline.store.sound import whole_runs
 
 ENDINGS = (".xlsx", ".csv", ".html")
 """Of the files that a plan is written to."""

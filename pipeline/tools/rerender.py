@@ -4,8 +4,7 @@ from pathlib import Path
 
 from pipeline.night.photographs import Photographs
 from pipeline.night.reading_summary import doubts_of
-from pipeline.operations.presentation import presentation, terms_of
-from pipeline.operations.report_status import renew
+from pipeline.operations.report_status import presentation, renew, terms_of
 from pipeline.operations.run_summary import SUMMARY
 from pipeline.operations.workspace import UsageError, locked, open_workspace
 from pipeline.quantities import counted
@@ -16,8 +15,8 @@ from pipeline.report.files.report_writer import ReportWriter
 from pipeline.report.render import draw_all
 from pipeline.settings import Settings
 from pipeline.store.pages import load_page
-from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import changes_since, compare_runs, load_head
+from pipeline.store.sound import whole_runs
 
 
 def render_again(settings: Settings, run_id: str | None) -> Path:

@@ -1,10 +1,11 @@
-"""The seismologist's desk: list, look at, process and accept the records of a site."""
+"""The seismologist's desk: list, look at, process, accept and export the records of a site."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pipeline.motions.catalogues import as_geojson, as_quakeml
 from pipeline.motions.corner_range import corner_range_of
 from pipeline.motions.doubts import doubts
 from pipeline.motions.errors import Judgement, MotionError
@@ -13,6 +14,7 @@ from pipeline.motions.site import levels_at, prepare, read_site
 from pipeline.motions.writing import accept, write_site
 from pipeline.operations.workspace import UsageError
 from pipeline.report import Units
+from pipeline.resources import replacing
 
 if TYPE_CHECKING:
     from pipeline.motions.inspection import Inspection
@@ -274,3 +276,41 @@ def overrule(folder: Path, name: str, reason: str, *, dry_run: bool = False) -> 
     if overruled and not dry_run:
         accept(file, name, dict.fromkeys(overruled, reason))
     return tuple(overruled.values())
+
+
+def export(folder: Path, quakeml: Path | None, geojson: Path | None, *, dry_run: bool = False) -> list[Path]:
+    """Write the earthquakes of a site's records, and the site with its stations.
+
+    Parameters
+    ----------
+    folder : Path
+        The site's folder, or its manifest.toml.
+    quakeml, geojson : Path or None
+        Where to; None writes none.
+    dry_run : bool
+        Write nothing.
+
+    Returns
+    -------
+    list of Path
+        What was written, or would be.
+
+    Raises
+    ------
+    UsageError
+        Where no file is named, or one is there already.
+    MotionError
+        For a manifest that cannot be used.
+    """
+    wanted = {path: kind for path, kind in ((quakeml, "QuakeML"), (geojson, "GeoJSON")) if path is not None}
+    if not wanted:
+        raise UsageError("name a file: --quakeml FILE, --geojson FILE, or both")
+    manifest = load_manifest(folder, begun=True)
+    for path in wanted:
+        if path.exists():
+            raise UsageError(f"{path} is there already, and nothing is overwritten; name another file")
+    for path, kind in wanted.items() if not dry_run else ():
+        text = as_quakeml(record for _, record in manifest.records()) if kind == "QuakeML" else as_geojson(manifest)
+        with replacing(path) as aside:
+            aside.write_text(text, encoding="utf-8")
+    return list(wanted)

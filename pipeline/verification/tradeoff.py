@@ -21,9 +21,8 @@ from pipeline.analysis.plan import plan
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.cache import TRADEOFFS, Cache, CacheEntry
 from pipeline.collection.inventory import read_inventory
-from pipeline.kernels import KERNEL_VERSION
+from pipeline.kernels import KERNEL_VERSION, SENSITIVE
 from pipeline.models import MODELS, model_named
-from pipeline.models.common import SENSITIVE
 from pipeline.motions.by_name import read_motion
 from pipeline.operations.workspace import UsageError, charts_of, folder_of_site, open_workspace
 from pipeline.quantities import Array

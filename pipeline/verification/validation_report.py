@@ -14,8 +14,7 @@ from pipeline.report.pages.validated import (
     validation_page,
 )
 from pipeline.verification.odds import Prior, friction_of, priors
-from pipeline.verification.scores import Score
-from pipeline.verification.validation import BodyValidation, Validation
+from pipeline.verification.validation import BodyValidation, Score, Validation
 
 
 def document(found: Validation) -> dict[str, Any]:

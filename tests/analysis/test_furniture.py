@@ -15,8 +15,7 @@ from pipeline.analysis.classify import classify, furniture_kind
 from pipeline.analysis.context import Context
 from pipeline.analysis.furnished import _off_level, _variants, best_furnished, furnished
 from pipeline.analysis.furniture import FurnitureFilter, filter_of, furniture_of
-from pipeline.analysis.house.effect import NO_EFFECT
-from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.house.matching import NO_EFFECT, HouseRules
 from pipeline.analysis.house.rule import HouseRule
 from pipeline.analysis.response import respond
 from pipeline.analysis.transmission import cascade, transmit

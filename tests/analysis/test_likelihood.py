@@ -18,9 +18,8 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
 from pipeline.analysis.fragility.curve import stated
 from pipeline.analysis.likelihood.analyses import Stood
-from pipeline.analysis.likelihood.draws import OTHERWISE, Draw, switched, value_at
+from pipeline.analysis.likelihood.draws import FARTHEST, OTHERWISE, Draw, switched, value_at
 from pipeline.analysis.likelihood.sampling import FIRST, likelihoods
-from pipeline.analysis.likelihood.shaking import FARTHEST
 from pipeline.analysis.survey import telling_requests
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions
@@ -245,7 +244,7 @@ def test_what_passes_for_the_whole_range_never_fails_within_it(monkeypatch: pyte
 
     Without the scatter of the models, which no verdict counts.
     """
-    monkeypatch.setattr("pipeline.analysis.likelihood.shaking.FARTHEST", 0.0)
+    monkeypatch.setattr("pipeline.analysis.likelihood.draws.FARTHEST", 0.0)
     scenes = [s for s in scenes_on_display()[::10] if s.models and s.furniture is Furniture.FLOOR]
     shaking = level(strong().scaled(0.35, "test"))
     _, judged = assess(scenes, [shaking], Context(Threads(1)))
@@ -278,7 +277,7 @@ def test_a_survey_asks_for_the_number_that_may_change_what_is_decided(monkeypatc
     above: of four parts those wholly above change what is decided, and measured there the loss of doing something (the
     target) is saved.  Without the scatter of the models, so that the closed form says which.
     """
-    monkeypatch.setattr("pipeline.analysis.likelihood.shaking.FARTHEST", 0.0)
+    monkeypatch.setattr("pipeline.analysis.likelihood.draws.FARTHEST", 0.0)
     push, seconds, low, best, high = 6.0, 0.3, 0.2, 0.3, 0.6
     limit = value_at(0.4, low, best, high)
     room = (push**2 * seconds**2 / (G * limit) - push * seconds**2) / 2.0

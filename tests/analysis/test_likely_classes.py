@@ -15,8 +15,7 @@ import pytest
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
-from pipeline.analysis.likelihood.analyses import CERTAIN, Kind, Stood
-from pipeline.analysis.likelihood.classes import LEAST, scenes_by_class
+from pipeline.analysis.likelihood.analyses import CERTAIN, LEAST, Kind, Stood, scenes_by_class
 from pipeline.analysis.likelihood.sampling import likelihoods
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
@@ -43,7 +42,7 @@ from pipeline.records import (
     Verdict,
 )
 from pipeline.report.pages.chances import chance_view
-from pipeline.report.pages.ranking import state_of
+from pipeline.report.pages.tallies import state_of
 from pipeline.report.pages.views import State
 
 MANY = Sampling(4096, 2.0)
@@ -56,7 +55,7 @@ LOW, BEST, HIGH = 0.2, 0.3, 0.6
 @pytest.fixture(autouse=True)
 def no_scatter(monkeypatch: pytest.MonkeyPatch) -> None:
     """The closed form is of a block without it."""
-    monkeypatch.setattr("pipeline.analysis.likelihood.shaking.FARTHEST", 0.0)
+    monkeypatch.setattr("pipeline.analysis.likelihood.draws.FARTHEST", 0.0)
 
 
 @cache

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import permutations
 from math import exp, hypot, log
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.analysis.footing import bearing_of
 from pipeline.analysis.likelihood.draws import Draw, Ranges, value_at
-from pipeline.analysis.sizes import SIZES
+from pipeline.analysis.sizes import SIZES, Sizes
 from pipeline.analysis.survey import telling_requests
 from pipeline.records import Band, Estimate, Item, Likelihood, Origin, Scene
 from pipeline.tables import table
@@ -150,3 +151,9 @@ def test_few_records_are_told_as_judgement() -> None:
     for row in table("proportions"):
         count = int(row["source"].rpartition(" records")[0].rpartition(" ")[2])
         assert count >= 20 or row["source"].startswith("judgement"), row
+
+
+def test_what_is_assumed_is_in_one_order_however_it_is_named() -> None:
+    """A set of names is in another order in each process, and the notes of a page changed their numbers with it."""
+    sizes = Sizes(VASE, {name: Estimate(0.1, 0.05, 0.2, "m", Origin.ASSUMED) for name in SIZES})
+    assert {tuple(sizes.used(names)) for names in permutations(SIZES)} == {SIZES}

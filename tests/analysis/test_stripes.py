@@ -16,12 +16,12 @@ from pipeline.analysis.fragility.curve import stated
 from pipeline.analysis.fragility.hazard import Hazard
 from pipeline.analysis.fragility.objects import Stripe, with_rate
 from pipeline.analysis.likelihood.analyses import Stood
-from pipeline.analysis.likelihood.shaking import FARTHEST, scatter
+from pipeline.analysis.likelihood.draws import FARTHEST, scatter
 from pipeline.analysis.likelihood.stripes import EACH, sampled_fragilities
 from pipeline.execute import Threads
 from pipeline.quantities import Array, G
 from pipeline.records import Estimate, Fragility, Item, Motion, Sampling, Scene, Support
-from pipeline.records.hazard import HazardCurve
+from pipeline.records.fragility import HazardCurve
 
 from .test_likelihood import pulse, scenes_on_display, strong
 

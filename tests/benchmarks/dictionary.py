@@ -1,4 +1,4 @@
-"""The texts that results share, for a dictionary that they are compressed with (see `pipeline.store.compression`).
+"""The texts that results share, for a dictionary that they are compressed with (see `pipeline.store.codec`).
 
 `python -m tests.benchmarks.dictionary DATABASE... > FILE` takes every 20th result of some databases; the file goes to
 `pipeline/store/dictionaries`, named by its checksum, which is printed.
@@ -11,7 +11,7 @@ import zlib
 from collections import Counter
 from collections.abc import Iterable
 
-from pipeline.store.compression import inflated, joined
+from pipeline.store.codec import inflated, joined
 
 SIZE = 8_000
 """Bytes: twice as many save 5 % more."""

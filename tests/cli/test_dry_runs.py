@@ -247,11 +247,10 @@ def test_a_first_dry_demo_makes_no_settings(museum: Path, tmp_path: Path, monkey
     # Of the bundled rows only some, and a motion whose charts are there: all of it takes as long as the demonstration.
     from pipeline.night.importing import bundled_collection
     from pipeline.operations import workspace
-    from pipeline.tools import demo
 
     rows = bundled_collection().read_text(encoding="utf-8").splitlines()[:4]
     (tmp_path / "few.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
-    monkeypatch.setattr(demo, "bundled_collection", lambda: tmp_path / "few.csv")
+    monkeypatch.setattr("pipeline.night.importing.bundled_collection", lambda: tmp_path / "few.csv")
     monkeypatch.setattr(workspace, "resource", lambda *_: museum / "shaking")
     shutil.copytree(museum / ".kouros-kept", tmp_path / "kouros-demo" / ".kouros-kept")
     before = digest(tmp_path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pipeline.desk.kept_pages import KeptPages
+from pipeline.desk.site import KeptPages
 
 from .visiting import Visitor
 

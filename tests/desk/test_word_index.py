@@ -6,9 +6,7 @@ import random
 
 import pytest
 
-from pipeline.desk import word_index
-from pipeline.desk.run_facts import folded
-from pipeline.desk.word_index import WordIndex
+from pipeline.desk.run_facts import WordIndex, folded
 
 LINES = [
     "1922.9 amphora east", "1922.90 amphora lid east", "2016.7 vase west", "a.7 vase and lid", "no title", "10.7.1",
@@ -35,7 +33,7 @@ def test_all_parts_are_in_the_words_of_a_line(parts: list[str], there: list[int]
 @pytest.mark.parametrize("few", [0, 3, 400])
 def test_it_finds_what_a_look_at_every_line_finds(few: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whether the words with a part are few or many."""
-    monkeypatch.setattr(word_index, "_FEW", few)
+    monkeypatch.setattr("pipeline.desk.run_facts._FEW", few)
     draw = random.Random(20_261_127)
     letters = "abé19.花\U0001f3fa-"
     lines = [

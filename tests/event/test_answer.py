@@ -21,9 +21,8 @@ from pipeline.event.answer import (
     drawn,
     normals,
 )  # fmt: skip
-from pipeline.event.capacities import KINDS, Capacities, FloorMotions, capacities
+from pipeline.event.capacities import KINDS, Capacities, FloorMotions, Stock, capacities, stock_joined, stock_of
 from pipeline.event.message import SiteShaking
-from pipeline.event.stock import Stock, stock_joined, stock_of
 from pipeline.quantities import Array, G
 from pipeline.records import Assessment, Fragility, Harm, Item, Likelihood, Sampling, Scene, Support
 from pipeline.records.fragility import ABOVE, HARM

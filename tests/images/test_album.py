@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.cache import THUMBNAILS, Cache
 from pipeline.images.album import Album, GatheredPhotos, ImageLimits
-from pipeline.images.iiif import pictures_of
+from pipeline.images.fetching import pictures_of
 from pipeline.records import Silent
 from tests.images.conftest import Site, photograph
 

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from pipeline.images.decoding import Decoder, check_kind
-from pipeline.images.errors import ImageError
+from pipeline.images.limits import ImageError
 from tests.images.conftest import photograph
 
 

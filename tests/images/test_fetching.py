@@ -5,8 +5,8 @@ import time
 import pytest
 
 from pipeline.images import fetching
-from pipeline.images.errors import ImageError
 from pipeline.images.fetching import Fetcher, Hosts
+from pipeline.images.limits import ImageError
 from tests.images.conftest import Handler, Site, photograph
 
 

@@ -21,7 +21,7 @@ from pipeline.kernels.pendulum import MOST_STEPS, substeps
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import G
 from pipeline.records import Numerics
-from pipeline.verification.extremes import complaint
+from pipeline.verification.self_measurement import complaint
 
 pytestmark = pytest.mark.slow_file
 

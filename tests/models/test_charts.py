@@ -12,8 +12,7 @@ from pipeline import respond
 from pipeline.analysis.chart_runs import DECIDES, look_up, run_chart
 from pipeline.analysis.model_runs import prepare, run_model
 from pipeline.analysis.response_charts import ChartCache, ResponseChart
-from pipeline.analysis.response_charts.refine import MOST_NODES, UNITS, refine
-from pipeline.analysis.response_charts.response_chart import axis_of
+from pipeline.analysis.response_charts.response_chart import MOST_NODES, UNITS, axis_of, refine
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import lift_ratios
 from pipeline.motions import read_motion

@@ -23,7 +23,7 @@ from pipeline.cli import kouros
 from pipeline.models import MODELS
 from pipeline.quantities import G
 from pipeline.verification import self_measurement as numerics
-from pipeline.verification.extremes import complaint, motions, pushed
+from pipeline.verification.self_measurement import complaint, motions, pushed
 from tests.soak import SOAK
 
 pytestmark = pytest.mark.slow_file

@@ -9,8 +9,8 @@ from shaking import random_motion, times
 
 from pipeline import Motion, respond
 from pipeline.analysis.model_runs import prepare, run_model
+from pipeline.kernels import SENSITIVE
 from pipeline.models import model_named
-from pipeline.models.common import SENSITIVE
 from pipeline.quantities import Array, G
 from pipeline.records import Numerics
 

@@ -12,14 +12,14 @@ from parameters import VALID
 from shaking import random_motion
 
 from pipeline import respond
-from pipeline.models import sharing
+from pipeline.models import common
 
 
 @pytest.fixture(autouse=True)
 def _as_before() -> Iterator[None]:
-    before = sharing._threads
+    before = common._threads
     yield
-    sharing.share_among(before)
+    common.share_among(before)
 
 
 @pytest.mark.parametrize("name", ["standing", "oscillator", "swing_3d", "friction_isolator", "sliding", "rocking"])
@@ -30,14 +30,14 @@ def test_any_number_of_threads_finds_the_same_bits(name: str) -> None:
     motion = random_motion(3, n=2_000)
     found = {}
     for threads in (1, 2, 3, 8):
-        sharing.share_among(threads)
+        common.share_among(threads)
         found[threads] = respond(name, motion, **many)
     for threads in (2, 3, 8):
         pd.testing.assert_frame_equal(found[threads], found[1], check_exact=True)
 
 
 def test_every_set_is_done_once_by_several_threads_and_none_is_left_behind() -> None:
-    sharing.share_among(4)
+    common.share_among(4)
     done = np.zeros(1_001, dtype=int)
     ran = set()
     meeting = threading.Barrier(2, timeout=30.0)
@@ -48,18 +48,18 @@ def test_every_set_is_done_once_by_several_threads_and_none_is_left_behind() -> 
             meeting.wait()  # Two are at work at once, else this breaks.
         done[part] += 1
 
-    sharing.shared(run, done.size, sharing.WORTH)
+    common.shared(run, done.size, common.WORTH)
     assert (done == 1).all()
     assert not [one for one in threading.enumerate() if one.name.startswith("kernel")]
 
 
 @pytest.mark.parametrize("at", [0, 500, 1_000])
 def test_what_goes_wrong_in_a_thread_is_raised(at: int) -> None:
-    sharing.share_among(3)
+    common.share_among(3)
 
     def run(part: slice) -> None:
         if part.start <= at < part.stop:
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        sharing.shared(run, 1_001, sharing.WORTH)
+        common.shared(run, 1_001, common.WORTH)

@@ -10,7 +10,7 @@ from pipeline.analysis.response import respond
 from pipeline.kernels import is_kept
 from pipeline.kernels.standing import standing_batch
 from pipeline.motions.synthesis import sine
-from pipeline.night.compiling import compile_ahead, to_compile
+from pipeline.night.staff import compile_ahead, to_compile
 
 
 def test_it_compiles_what_a_body_that_stands_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

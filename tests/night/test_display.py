@@ -13,8 +13,8 @@ from pipeline.cli.console import summary_lines
 from pipeline.collection.database import open_database
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.night import scheduler
-from pipeline.night.paging import paged
 from pipeline.night.run import Selection, run
+from pipeline.night.units import paged
 from pipeline.operations.run_summary import Summary
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import Assessment, DecisionKind

@@ -14,8 +14,8 @@ from pipeline.motions import site
 from pipeline.motions.pulses import WaveletPulse, shahi_baker_pulse
 from pipeline.night import scheduler, staff
 from pipeline.night.context import RunContext
-from pipeline.night.paging import paged
 from pipeline.night.unit_tasks import Assessments, UnitTask, assess_units
+from pipeline.night.units import paged
 from tests.night.changing import Changing, exported, leave_out_pages
 
 pytestmark = pytest.mark.slow_file

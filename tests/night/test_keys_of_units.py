@@ -15,7 +15,7 @@ from babel.messages.mofile import write_mo
 from pipeline import resources
 from pipeline.night import publication, scheduler
 from pipeline.night.context import RunContext
-from pipeline.night.page_tasks import PageTask, Rendered
+from pipeline.night.publication import PageTask, Rendered
 from pipeline.night.run import run
 from pipeline.night.unit_tasks import Assessments, UnitTask
 from pipeline.operations.workspace import UsageError, open_workspace

@@ -19,7 +19,7 @@ from pipeline.models.common import lift_ratios
 from pipeline.models.swing import PICTURED_EVERY
 from pipeline.motions import read_motion
 from pipeline.motions.synthesis import band_limited_random
-from pipeline.night import figures
+from pipeline.night.prepare import Pictures
 from pipeline.quantities import Array, G
 from pipeline.records import Chart, ChartFigure, Motion, Numerics, Silent
 from pipeline.records.numerics import SCAN
@@ -178,12 +178,12 @@ def drawing(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         done.append(motion.hash)
         return draw(motion, context)
 
-    monkeypatch.setattr(figures, "draw", counted)
+    monkeypatch.setattr("pipeline.night.prepare.draw", counted)
     return done
 
 
 def pictures_of(folder: Path, *motions: Motion) -> dict[str, Chart]:
-    pictures = figures.Pictures(Settings(home=folder.parent))
+    pictures = Pictures(Settings(home=folder.parent))
     try:
         return pictures.of(motions, Silent())
     finally:
@@ -216,7 +216,7 @@ def test_pictures_of_another_motion_or_by_other_code_are_drawn(
     shaking[0, 100] = np.nextafter(shaking[0, 100], np.inf)
     other = Motion(motion.dt, shaking, motion.name)
     nothing: dict[str, Chart] = {}
-    monkeypatch.setattr(figures, "draw", lambda motion, _: drawing.append(motion.hash) or nothing)
+    monkeypatch.setattr("pipeline.night.prepare.draw", lambda motion, _: drawing.append(motion.hash) or nothing)
     pictures_of(kept, motion, other)
     assert drawing == [other.hash] != [motion.hash]
     monkeypatch.setattr("pipeline.cache.code_version", lambda: "0" * 64)

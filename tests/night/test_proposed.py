@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.night.importing import proposed
-from pipeline.night.unknown_names import unknown_names
+from pipeline.night.importing import proposed, unknown_names
 from pipeline.records import Item
 
 

@@ -22,7 +22,7 @@ from pipeline.night.run import Selection, run
 from pipeline.operations.run_summary import Summary
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import Doubt, Problem
-from pipeline.records.reading import DOUBTFUL
+from pipeline.records.run import DOUBTFUL
 from pipeline.report import render
 from pipeline.report.pages.reading import PAGES, SHOWN, page_file
 from pipeline.settings import Settings, load_settings

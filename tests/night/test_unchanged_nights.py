@@ -16,8 +16,8 @@ from pipeline.collection.database import open_database
 from pipeline.collection.listing import Listed, Listing, order
 from pipeline.errors import DamageWarning
 from pipeline.night import scheduler
-from pipeline.night.paging import MOST, STORED, paged
 from pipeline.night.run import run
+from pipeline.night.units import MOST, STORED, paged
 from pipeline.report.errors import ReportWarning
 from pipeline.settings import DisplaySettings, Floors, Settings, load_settings
 from pipeline.store.tables import RESULT

@@ -26,9 +26,10 @@ from sqlalchemy import select
 from pipeline.collection.database import open_database
 from pipeline.operations.report_status import FAILED, GOOD, RESERVE, RUNNING, status
 from pipeline.settings import load_settings
-from pipeline.store.pages import damaged_pages, load_members
+from pipeline.store.pages import load_members
 from pipeline.store.results import damaged as damaged_results
 from pipeline.store.tables import PAGE, RESULT
+from pipeline.store.verifying import verify_table
 from tests.museum import COLUMNS, edit, workspace
 
 from .conftest import within
@@ -224,7 +225,7 @@ def _database(file: Path) -> Iterator[str]:
     with engine.connect() as connection:
         there = set(connection.execute(select(RESULT.c.key)).scalars())
         pages = connection.execute(select(PAGE.c.key)).scalars().all()
-        damaged = list(damaged_pages(engine))
+        damaged = [one.row for one in verify_table(engine, "page")]
         named = {key for page in set(pages) - set(damaged) for key in load_members(connection, page).wanted}
     if there != named:
         yield f"results of no page: {len(there - named)}, pages without their results: {len(named - there)}"

@@ -30,7 +30,7 @@ from pipeline.settings import KEPT, load_settings, template
 from pipeline.store.decisions import add_decision
 from pipeline.store.tables import METADATA
 from pipeline.store.verifying import tables, verify_table
-from pipeline.tools.deep_check import examine
+from pipeline.tools.doctor_checks import examine
 from pipeline.tools.synthetic import synthesise
 from tests.museum import small
 

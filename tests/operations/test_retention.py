@@ -24,8 +24,8 @@ from pipeline.operations.workspace import (
 )
 from pipeline.report import publish
 from pipeline.settings import KEPT, Retention, Settings
-from pipeline.store.reuse import SELECTION
 from pipeline.store.runs import commit_run, list_runs
+from pipeline.store.sound import SELECTION
 from tests.report import builder
 
 NOW = datetime.now(UTC)

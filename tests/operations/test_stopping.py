@@ -17,7 +17,7 @@ from pipeline.operations.report_status import Status, status
 from pipeline.operations.run_summary import exit_code_of, words_of
 from pipeline.operations.stopping import Stopped, uninterrupted
 from pipeline.settings import load_settings
-from pipeline.tools.demo import demonstration
+from pipeline.tools.initialise import demonstration
 from tests.museum import workspace
 
 from .conftest import command, environment, validate, within

@@ -12,8 +12,7 @@ from scipy.optimize import linprog
 from scipy.sparse import lil_array
 
 from pipeline.errors import InputError
-from pipeline.planning.bundles import bundles
-from pipeline.planning.choice import EXACT, EffortLimits, ErrandWork, choose
+from pipeline.planning.choice import EXACT, EffortLimits, ErrandWork, bundles, choose
 from pipeline.planning.efforts import Efforts, efforts
 from pipeline.planning.errands import Advised, Errand, errands_of
 from pipeline.planning.plan import ErrandPlan, PlanTerms, gallery_order, plan_of

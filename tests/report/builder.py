@@ -21,7 +21,7 @@ from pipeline.records import (
     Support,
     Verdict,
 )
-from pipeline.records.reading import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
+from pipeline.records.run import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
 
 from .pictures import HASH, charts, motion
 

@@ -7,8 +7,8 @@ import pytest
 
 from pipeline.records import Finding
 from pipeline.report.files.exports import FINDING_COLUMNS, FindingRows
-from pipeline.report.pages.alike import Memory, finding_key
 from pipeline.report.pages.describe import Sayings
+from pipeline.report.pages.notes import Memory, finding_key
 from pipeline.report.units import Units
 
 from . import builder

@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.records import Anchorage, Furniture, Hanging, Item, Scene, Support
-from pipeline.records import run_sentences as say
+from pipeline.records import phrases as say
 from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES
 from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced

@@ -6,8 +6,8 @@ import pytest
 
 from pipeline.records import Assessment, Item, Mark, Move, ObjectPlace, RunChanges
 from pipeline.report import ReportError, Units
-from pipeline.report.pages.ranking import urgency
 from pipeline.report.pages.since import since_view
+from pipeline.report.pages.tallies import urgency
 from pipeline.report.pages.views import State, StateCounts
 from pipeline.report.text import cased, count, short, slug, words
 

@@ -11,9 +11,8 @@ from lxml import etree
 
 from pipeline.records import Item, Origin, Verdict
 from pipeline.report import Units, render
-from pipeline.report.pages.floor_plan import needed_clearance
+from pipeline.report.pages.floor_plan import GalleryPlanView, needed_clearance
 from pipeline.report.pages.museum_views import GalleryView
-from pipeline.report.pages.plan_views import GalleryPlanView
 
 from . import builder
 from .shown import shown

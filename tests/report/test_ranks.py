@@ -28,8 +28,7 @@ from pipeline.report.files.exports import OBJECT_COLUMNS, RANK, part_of, schema_
 from pipeline.report.files.ranks import keys_part, ranks_of
 from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.news_words import to_do
-from pipeline.report.pages.ranking import urgency
-from pipeline.report.pages.tallies import tally
+from pipeline.report.pages.tallies import tally, urgency
 from pipeline.resources import resource
 from pipeline.store.results import anonymous, encode
 

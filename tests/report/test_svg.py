@@ -9,9 +9,8 @@ from lxml import etree
 
 from pipeline.records import Axis, Chart, Curve, Zone
 from pipeline.report import ReportError, Units
-from pipeline.report.plots.chart import Drawing, Spot
-from pipeline.report.plots.labels import _all_inside, inside, roomy
-from pipeline.report.plots.scales import Scale, linear_ticks, log_between, log_ticks
+from pipeline.report.plots.chart import Drawing, Spot, _all_inside, inside, roomy
+from pipeline.report.plots.panel import Scale, linear_ticks, log_between, log_ticks
 from pipeline.report.plots.svg import element, text, thin, write
 from pipeline.report.plots.traces import trace
 

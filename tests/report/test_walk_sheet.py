@@ -13,7 +13,6 @@ from pipeline.mitigate.saying import ANCHORED, ENGINEER, HEAVIEST
 from pipeline.quantities import G
 from pipeline.records import Recommendation
 from pipeline.report import render
-from pipeline.report.by_hand import inches
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.walk_sheet import LACKING, PAPERS, sheet_file, sheet_pdf
 from pipeline.report.language import Language
@@ -24,7 +23,7 @@ from pipeline.report.pages.plainly import brief_measure
 from pipeline.report.pages.views import PageView, State
 from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, numbers_to_set, walk_view
 from pipeline.report.render import pages_of
-from pipeline.report.units import Units
+from pipeline.report.units import Units, inches
 
 from . import builder
 from .shown import shown

@@ -21,7 +21,7 @@ from pipeline.motions.errors import MotionError
 from pipeline.motions.manifest import load_manifest
 from pipeline.motions.reading import LARGEST, open_traces
 from pipeline.report import Language
-from pipeline.report.files.publish import _redirect
+from pipeline.report.files.manifest import _redirect
 from pipeline.report.pages.landing import landing_page
 from pipeline.report.text import slug
 from pipeline.resources import SMALL, small_text

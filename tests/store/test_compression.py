@@ -5,20 +5,19 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.store import compression
-from pipeline.store.codec import StoreError
-from pipeline.store.compression import deflated, inflated, joined
+from pipeline.store import codec
+from pipeline.store.codec import StoreError, deflated, inflated, joined
 from pipeline.store.results import anonymous, decode, encode
 from tests.store.run_samples import assessment, finding
 
-FOLDER = Path(compression.__file__).with_name("dictionaries")
+FOLDER = Path(codec.__file__).with_name("dictionaries")
 RESULT = anonymous(assessment("1", finding("1")), {}, None)
 
 
 def test_every_dictionary_is_what_its_name_says() -> None:
     """Changed by a letter it would make rows of before unreadable: a new one is a new file."""
     names = {file.stem for file in FOLDER.glob("*.txt")}
-    assert compression.NEWEST in names
+    assert codec.NEWEST in names
     for name in names:
         assert f"{zlib.adler32(joined((FOLDER / f'{name}.txt').read_text(encoding='utf-8'))):08x}" == name
 
@@ -26,7 +25,7 @@ def test_every_dictionary_is_what_its_name_says() -> None:
 def test_what_is_written_names_its_dictionary_and_comes_back() -> None:
     content = b'{"note":"mass of 3 kg"}' * 9
     packed = deflated(content)
-    assert packed[2:6].hex() == compression.NEWEST
+    assert packed[2:6].hex() == codec.NEWEST
     assert inflated(packed) == content
     assert deflated(content) == packed
 

@@ -15,11 +15,11 @@ from pipeline.collection.database import open_database
 from pipeline.records import Assessment, Chart, Estimate, MeasurementRequest, Origin, Page, RunRecord, Spacing, Verdict
 from pipeline.store.codec import StoreError
 from pipeline.store.migrate import upgrade
-from pipeline.store.pages import damaged_pages, load_page
-from pipeline.store.pruning import remove_runs
+from pipeline.store.pages import load_page, remove_runs
 from pipeline.store.results import anonymous, damaged, encode, keep
 from pipeline.store.runs import commit_run, latest_run_id, list_runs, load_head, load_run
 from pipeline.store.tables import PAGE, RESULT, RUN, RUN_CHART, RUN_MOTION, RUN_PAGE
+from pipeline.store.verifying import verify_table
 from tests.soak import examples
 from tests.store.run_samples import RUNS, assessment, finding, motion, run, save_run
 
@@ -264,9 +264,9 @@ def test_a_result_that_is_not_what_was_written_is_noticed(engine: Engine, column
 def test_a_page_that_is_not_what_was_written_is_noticed(engine: Engine, column: str) -> None:
     save_run(engine, run("a", assessment("1", finding("1"))))
     _, (page,) = load_head(engine, "a")
-    assert list(damaged_pages(engine)) == []
+    assert list(verify_table(engine, "page")) == []
     _altered(engine, PAGE, column)
-    assert len(list(damaged_pages(engine))) == 1
+    assert len(list(verify_table(engine, "page"))) == 1
     with pytest.raises(StoreError, match=r"page .*(is damaged|pruned while it was read)"):
         load_page(engine, page.key)
 

@@ -18,7 +18,7 @@ from pipeline.collection.database import open_database
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.installed import InstalledMeasure, placed
 from pipeline.motions import read_motion
-from pipeline.night.decision_review import Now, standing
+from pipeline.night.publication import Now, standing
 from pipeline.night.run import run
 from pipeline.operations.run_summary import Summary
 from pipeline.operations.workspace import UsageError, Workspace, open_workspace

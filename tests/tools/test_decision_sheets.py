@@ -13,7 +13,7 @@ import pytest
 
 from pipeline.collection.database import open_database
 from pipeline.records import DecisionKind
-from pipeline.report.files.decisions_sheet import DECISIONS_SHEET
+from pipeline.report.files.survey_sheet import DECISIONS_SHEET
 from pipeline.settings import load_settings
 from pipeline.store.decisions import read_decisions
 from pipeline.tools.inbox import InboxFile, take_inbox

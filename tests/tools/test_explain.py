@@ -10,7 +10,7 @@ from click.testing import CliRunner, Result
 from pipeline.cli.commands import run as command
 from pipeline.cli.console import Console
 from pipeline.cli.explaining import explanation_lines
-from pipeline.cli.options import Options
+from pipeline.cli.shared import Options
 from pipeline.collection.database import open_database
 from pipeline.mitigate.saying import ANCHORED
 from pipeline.night.run import run

@@ -20,8 +20,7 @@ from pipeline.records.protocols import Silent
 from pipeline.resources import resource
 from pipeline.verification import odds
 from pipeline.verification.experiment import ExperimentError, experiment_schema, read_experiment
-from pipeline.verification.scores import score
-from pipeline.verification.validation import Validation, fit, folds, threshold, validate
+from pipeline.verification.validation import Validation, fit, folds, score, threshold, validate
 from pipeline.verification.validation_report import document, page
 
 WIDTH, DEPTH, HEIGHT = 0.12, 0.4, 0.6

@@ -7,7 +7,7 @@ import numpy as np
 
 from pipeline.errors import InputError
 from pipeline.quantities import Array
-from pipeline.records.hazard import HazardCurve, Measure
+from pipeline.records.fragility import HazardCurve, Measure
 
 EXTENDED = 2.0
 """Factor of intensity by which the straight ends of a hazard curve are drawn out beyond its levels, and no further."""

@@ -17,8 +17,7 @@ from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.verdicts import capacity_of
 from pipeline.quantities import Array
 from pipeline.records import Fragility, Motion, Numerics, Scene
-from pipeline.records.fragility import ABOVE, FLAT
-from pipeline.records.hazard import HazardCurve, Measure
+from pipeline.records.fragility import ABOVE, FLAT, HazardCurve, Measure
 
 DIRECTIONS = 30.0
 """Degrees between the directions tried at least: a worst one missed by half of that is 3 % of the demand."""

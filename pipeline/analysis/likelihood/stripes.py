@@ -42,14 +42,12 @@ from pipeline.analysis.likelihood.analyses import (
     harmful_states,
     possible_states,
 )
-from pipeline.analysis.likelihood.draws import Draw
+from pipeline.analysis.likelihood.draws import Draw, scatter, which_motion
 from pipeline.analysis.likelihood.sampling import PART, sampled
-from pipeline.analysis.likelihood.shaking import scatter, which_motion
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.quantities import Array
 from pipeline.records import Executor, Fragility, Motion, Sampling
-from pipeline.records.fragility import ABOVE, BELOW, FLAT, HARM
-from pipeline.records.hazard import HazardCurve, Measure
+from pipeline.records.fragility import ABOVE, BELOW, FLAT, HARM, HazardCurve, Measure
 
 EACH = 16
 """Samples of a stripe at least; a power of two, so that each part of the sequence is balanced."""

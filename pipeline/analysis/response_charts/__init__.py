@@ -2,8 +2,7 @@
 
 from pipeline.analysis.response_charts.charts import PROCESS_CHARTS, ChartCache
 from pipeline.analysis.response_charts.grouping import ChartSettings, Tabulated, chart_of, tabulate
-from pipeline.analysis.response_charts.refine import SAFETY
-from pipeline.analysis.response_charts.response_chart import Looked, ResponseChart, Run, axis_of
+from pipeline.analysis.response_charts.response_chart import SAFETY, Looked, ResponseChart, Run, axis_of
 
 __all__ = [
     "PROCESS_CHARTS",

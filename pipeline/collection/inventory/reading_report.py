@@ -21,7 +21,7 @@ from pipeline.collection.sealing import damaged_rows, require_sound, seal_column
 from pipeline.collection.used import characters_of, used_of
 from pipeline.errors import DamageWarning
 from pipeline.records import Account, Doubt, Item
-from pipeline.records.reading import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
+from pipeline.records.run import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
 
 PLACES = 50_000
 """Doubtful objects of which a version keeps row and line: of more their numbers must do."""

@@ -11,17 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecord, Scene, Urgency
-from pipeline.report.by_hand import by_hand
 from pipeline.report.files.object_list import LISTED
 from pipeline.report.files.ranks import KEYS, keys_part
 from pipeline.report.files.workbook import write_workbook
-from pipeline.report.pages.alike import Memory, finding_key
 from pipeline.report.pages.chances import chance_columns
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import first_failure
-from pipeline.report.pages.ranking import state_of
+from pipeline.report.pages.notes import Memory, finding_key
+from pipeline.report.pages.tallies import state_of
 from pipeline.report.text import encodable, safe_cell
-from pipeline.report.units import Units
+from pipeline.report.units import Units, by_hand
 
 _NUMBERS = (
     "demand", "low", "high", "capacity", "utilisation", "error",

@@ -1,4 +1,4 @@
-"""The manifest of a report: its pages and the checksum of every file, so that none can change unnoticed.
+"""The manifest of a report, by which no file can change unnoticed, and the one lasting name for the newest.
 
 ``.pages.json`` is written last and sealed by a digest of its own content.  Of an earlier report only what is still as
 it was written is used again; `verify_report` looks at all of it.
@@ -11,16 +11,19 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
+from html import escape
 from pathlib import Path
 from typing import NamedTuple
+from urllib.parse import quote
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from pipeline.records import Tally
-from pipeline.report.errors import ReportWarning
+from pipeline.report.errors import ReportError, ReportWarning
 from pipeline.report.files.exports import PARTS_OF_PAGE
 from pipeline.report.files.walk_sheet import sheet_file
 from pipeline.report.pages.views import Entry
+from pipeline.resources import aside_of, replacing
 
 MANIFEST = ".pages.json"
 PARTS = "parts"
@@ -257,3 +260,67 @@ def verify_report(folder: Path) -> Iterator[ReportDamage]:
     for file in sorted(folder.rglob("*")):
         if file not in known and not file.is_dir():
             yield ReportDamage(file, "is not of this report")
+
+
+LINK, PAGE = "latest", "latest.html"
+
+_POLICY = "default-src 'none'; base-uri 'none'; form-action 'none'"
+
+
+def publish(folder: Path, root: Path) -> Path:
+    """Point ``root/latest`` at a whole report, atomically; earlier reports stay where they are.
+
+    folder  : a rendered report inside root
+    root    : the folder that holds all reports
+    returns : root/latest, or root/latest.html on a file system without symbolic links
+    raises  : FileNotFoundError if the folder holds no report; ReportError if it lies outside root or the name
+              "latest" is taken by something that Kouros did not make
+    """
+    folder, root = folder.resolve(), root.resolve()
+    if not (folder / "index.html").is_file():
+        raise FileNotFoundError(f"{folder} holds no index.html; render the report first")
+    if not folder.is_relative_to(root) or folder == root:
+        raise ReportError(f"{folder} is not inside {root}; render reports into a folder below it")
+    link = root / LINK
+    if link.exists() and not link.is_symlink():
+        raise ReportError(f"{link} is not a link that Kouros made; move it away, then publish again")
+    target = folder.relative_to(root)
+    page = root / PAGE
+    if lasting_name(root) == page:
+        return _redirect(target, page)
+    with replacing(link) as aside:
+        aside.symlink_to(target, target_is_directory=True)
+    if page.exists():
+        _redirect(target, page)  # A page left by an earlier system would go on showing an old report.
+    return link
+
+
+def lasting_name(root: Path) -> Path:
+    """Return what `publish` gives, before it is done: a report tells it, and is whole before it is shown.
+
+    root : the folder that holds all reports, which exists
+    """
+    link = root / LINK
+    if link.is_symlink():
+        return link
+    aside = aside_of(link)
+    try:
+        aside.symlink_to(PAGE)
+    except (OSError, NotImplementedError):
+        # Windows without the privilege, and some network drives, refuse symbolic links; a page can be replaced instead.
+        return root / PAGE
+    aside.unlink()
+    return link
+
+
+def _redirect(target: Path, page: Path) -> Path:
+    address = escape(quote(target.as_posix()) + "/index.html", quote=True)
+    with replacing(page) as aside:
+        aside.write_text(
+            '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"/>'
+            f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}"/><title>Latest report</title>'
+            f'<meta http-equiv="refresh" content="0; url={address}"/></head>'
+            f'<body><p><a href="{address}">The latest report</a></p></body></html>\n',
+            encoding="utf-8",
+        )
+    return page

@@ -17,7 +17,7 @@ from pipeline.report.files.workbook import saved
 from pipeline.report.pages.compose import anchor_of, page_name
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.errand_views import number, said_of, title_of
-from pipeline.report.pages.ranking import state_of
+from pipeline.report.pages.tallies import state_of
 from pipeline.report.pages.views import State
 from pipeline.report.text import safe_cell
 from pipeline.report.units import Units

@@ -32,11 +32,10 @@ from pipeline.report.files.manifest import (
     sum_of,
     write_manifest,
 )
-from pipeline.report.files.object_list import LISTED, OBJECTS, SHOWN, is_list_file, listed_pages
+from pipeline.report.files.object_list import LISTED, OBJECTS, SHOWN, is_list_file, listed_pages, turned, turns
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
 from pipeline.report.files.plan_files import PLAN_FILES, PLANNED_FROM, gathered_from, write_plan_table
 from pipeline.report.files.ranks import KEYS, ranks_of
-from pipeline.report.files.turning import turned, turns
 from pipeline.report.files.walk_sheet import sheet_file
 from pipeline.report.language import speaking
 from pipeline.report.pages.class_curves import FILE as CLASS_CURVES

@@ -18,13 +18,12 @@ from pipeline.report.pages.floor_plan import plan_view
 from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
 from pipeline.report.pages.museum_views import GalleryView, MuseumView
-from pipeline.report.pages.numerics import decided_views, fidelities
+from pipeline.report.pages.numerics import decided_views, fidelities, self_test_view
 from pipeline.report.pages.photo_views import credits_of, photo_view
-from pipeline.report.pages.ranking import urgency
 from pipeline.report.pages.reading import reading_view
 from pipeline.report.pages.scene_words import furniture_known
-from pipeline.report.pages.selftest import self_test_view
 from pipeline.report.pages.survey_words import SURVEY_SECONDS, errands, survey_sentence
+from pipeline.report.pages.tallies import urgency
 from pipeline.report.pages.views import (
     EffortView,
     Entry,

@@ -25,17 +25,16 @@ from pipeline.records import (
 )
 from pipeline.records.result import BOUNDS
 from pipeline.report.assumed import assumed, class_words, happening, rejected, rule_words, sourced
-from pipeline.report.by_hand import by_hand
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
-from pipeline.report.pages.alike import Memory, finding_key
 from pipeline.report.pages.chances import chance_view, left_over, open_for, worth_words
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
+from pipeline.report.pages.notes import Memory, finding_key
 from pipeline.report.pages.plainly import brief_measure, dangers, full_measure, plain_measure
-from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of, urgency
 from pipeline.report.pages.scene_words import furniture, held, left_out, taken_words
 from pipeline.report.pages.survey_words import missing_words, wish_views
+from pipeline.report.pages.tallies import finding_order, finding_state, grave, state_of, urgency
 from pipeline.report.pages.views import (
     Bar,
     CheckView,
@@ -50,7 +49,7 @@ from pipeline.report.pages.views import (
 )
 from pipeline.report.plots.chart import Spot
 from pipeline.report.text import clean, digest, plain, short, words
-from pipeline.report.units import Units, ratio
+from pipeline.report.units import Units, by_hand, ratio
 
 _PLACEHOLDER = re.compile(r"{(\w+)}")
 _RANGE = re.compile(r" \([^()]*{(?:low|high)}[^()]*\)")

@@ -11,14 +11,37 @@ from pipeline.quantities import LENGTHS
 from pipeline.records import Assessment, Item
 from pipeline.report.language import _, ngettext
 from pipeline.report.pages.judging import SpacingView
-from pipeline.report.pages.plan_views import GalleryPlanView, PlaceView
 from pipeline.report.pages.views import STATES, Judged, ObjectView, State
 from pipeline.report.plots import svg
-from pipeline.report.plots.panel import Panel
-from pipeline.report.plots.scales import Scale, nice_step
+from pipeline.report.plots.panel import Panel, Scale, nice_step
 from pipeline.report.plots.svg import Element, Point
 from pipeline.report.text import count, plain, short
 from pipeline.report.units import Units
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceView:
+    """A row of the plan's table: the number on the plan, the object, and where it stands, in the reader's units."""
+
+    number: int
+    object: ObjectView
+    position: str
+    footprint: str
+    clearance: str
+
+
+@dataclass(frozen=True, slots=True)
+class GalleryPlanView:
+    """A gallery to scale: the drawing, its legend in rows, and how many objects have no recorded position.
+
+    tight : the neighbours between which a line is drawn, for they may meet: each pair once, as it is at its worst level
+    """
+
+    svg: Markup
+    places: tuple[PlaceView, ...]
+    missing: int
+    tight: tuple[SpacingView, ...]
+
 
 WIDTH = 1000.0
 """Pixels of the drawing's own system; its height follows the gallery."""

@@ -14,8 +14,7 @@ from pipeline.records.fragility import ABOVE, BELOW, FLAT, HARM
 from pipeline.records.result import BOUNDS
 from pipeline.report.language import _, local, ngettext, said
 from pipeline.report.pages.chances import state_word
-from pipeline.report.plots.panel import Panel
-from pipeline.report.plots.scales import Scale
+from pipeline.report.plots.panel import Panel, Scale
 from pipeline.report.plots.svg import path, picture, text, through, upright
 from pipeline.report.text import clean, count
 from pipeline.report.units import Units, percent, significant

@@ -3,11 +3,10 @@
 from dataclasses import dataclass, field
 
 from pipeline.report.pages.class_curves import ClassCurveView
+from pipeline.report.pages.floor_plan import GalleryPlanView
 from pipeline.report.pages.judging import RoomView, ShakingView, SpacingView
-from pipeline.report.pages.numerics import DecidedView
-from pipeline.report.pages.plan_views import GalleryPlanView
+from pipeline.report.pages.numerics import DecidedView, SelfTestView
 from pipeline.report.pages.reading import ReadingView
-from pipeline.report.pages.selftest import SelfTestView
 from pipeline.report.pages.views import (
     NO_DECISIONS,
     DecisionsView,

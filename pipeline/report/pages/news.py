@@ -8,8 +8,8 @@ from typing import Any
 from pipeline.records import Band, Brief, DecisionKind, NewsKind, ObjectChange, Ruled, RunChanges, Settled, State
 from pipeline.report.language import _, moment, ngettext, parted, said
 from pipeline.report.pages.chances import band_word, class_title
-from pipeline.report.pages.house_words import stated_told, word_told
 from pipeline.report.pages.news_words import TITLE, to_do, was_done
+from pipeline.report.pages.scene_words import stated_told, word_told
 from pipeline.report.pages.survey_words import missing_words
 from pipeline.report.pages.views import Pointer
 from pipeline.report.text import clean, count, plain, short, words

@@ -22,12 +22,11 @@ from pipeline.mitigate.saying import (
 )
 from pipeline.quantities import G
 from pipeline.records import Finding, Recommendation
-from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
-from pipeline.report.pages.ranking import finding_state
+from pipeline.report.pages.tallies import finding_state
 from pipeline.report.pages.views import Judged
 from pipeline.report.text import clean
-from pipeline.report.units import Units, significant
+from pipeline.report.units import Units, by_hand, significant
 
 AMPLE = 20.0
 """Times what is needed [-] above which nobody asks how many: a few grams are held hundreds of times over."""

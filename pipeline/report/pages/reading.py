@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.records import Doubt
-from pipeline.records.reading import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
+from pipeline.records.run import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
 from pipeline.report.assumed import assumed
 from pipeline.report.language import _, said
 from pipeline.report.text import clean, count, safe_cell, short, words

@@ -14,8 +14,7 @@ from pipeline.motions.manifest import TargetTable
 from pipeline.motions.spectra import fourier_amplitude
 from pipeline.quantities import Array, G
 from pipeline.report.pages.record_words import measured
-from pipeline.report.plots.panel import Panel, legend
-from pipeline.report.plots.scales import Scale
+from pipeline.report.plots.panel import Panel, Scale, legend
 from pipeline.report.plots.svg import Element, picture
 from pipeline.report.text import plain, short
 from pipeline.report.units import Units

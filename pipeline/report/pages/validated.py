@@ -29,7 +29,7 @@ class PredictionView:
     name : str
         What predicts.
     accuracy, brier : float
-        As `pipeline.verification.scores.Score` has them.
+        As `pipeline.verification.validation.Score` has them.
     coverage : str
         Observed and stated, or "" where it states no probability.
     confusion : (int, int, int, int)

@@ -9,14 +9,13 @@ from pipeline.mitigate.saying import ANCHORED, ENGINEER, HELD_FIRST, UPPER_FIRST
 from pipeline.planning.errands import deciding
 from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Recommendation
-from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, parted, said
 from pipeline.report.pages.chances import name_of
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.plainly import times_weight, weighed_first
 from pipeline.report.pages.views import ObjectView, PageView, State, SurveyView, TaskView
 from pipeline.report.text import clean, short, words
-from pipeline.report.units import Units
+from pipeline.report.units import Units, by_hand
 
 WORDS = 8
 """Words at most that say what to do: what is read while walking."""

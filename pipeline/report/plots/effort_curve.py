@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from pipeline.report.language import _
-from pipeline.report.plots.panel import Panel
-from pipeline.report.plots.scales import Scale, limits
+from pipeline.report.plots.panel import Panel, Scale, limits
 from pipeline.report.plots.svg import Element, element, level, path, picture, text, through, upright
 from pipeline.report.text import count
 

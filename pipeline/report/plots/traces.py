@@ -7,8 +7,7 @@ from markupsafe import Markup
 from pipeline.records import MotionSummary
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _
-from pipeline.report.plots.panel import Panel, tick
-from pipeline.report.plots.scales import Scale, limits
+from pipeline.report.plots.panel import Panel, Scale, limits, tick
 from pipeline.report.plots.svg import Element, path, picture, sideways, text, thin, through
 from pipeline.report.text import plain, short
 from pipeline.report.units import Units
