@@ -42,8 +42,8 @@ _KIND = re.compile(r"\(\s*([^()]+?)\s*\)\s*$")
 """What stands in brackets at the end and may say what the thing itself is: Brasão (desenho)."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
 """What a maker calls a thing, which is no model of it: Clock Model No. 101."""
-_IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])")
-"""What stands ahead of a thing made small: miniature furniture is no picture."""
+_IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])|,\s*miniature\s*$")
+"""What stands ahead of a thing made small, or behind a comma: miniature furniture and a vase, miniature, are no pictures."""
 _THINGS = ("vessel", "dish", "seat", "table", "cabinet", "clock", "figurine")
 _NOT_THINGS = (
     *("plate", "glass", "block", "group", "animal", "container", "figure", "tray", "stand"),
@@ -164,9 +164,9 @@ Of 57 such words of names in English, 38 said the class (vocabularies of six mus
 was looked at); in Romance and Slavic languages, where adjectives stand behind their noun, all 23.
 """
 _ADJECTIVE = re.compile(
-    r"(?:[aoi]s?|[nk]y|(?:ique|phe|aire|euse|eux|ante|ee|ale|elle|ien|ienne|ois|oise|ais|aise)s?|[^\x00-\x7f])$"
+    r"(?:[aoi]s?|[nk]y|ed|made|(?:ique|phe|aire|euse|eux|ante|ee|ale|elle|ien|ienne|ois|oise|ais|aise)s?|[^\x00-\x7f])$"
 )
-"""How an unknown word ends, folded, that may be an adjective behind its noun: vaso etrusco, masque funéraire."""
+"""How an unknown word ends, folded, that may be an adjective behind its noun: vaso etrusco, masque funéraire, vase decorated."""
 _SHORT = 2
 """Letters up to which an unknown word behind a noun is a number or the like: chair II."""
 _BLANK = ("", "(not assigned)", "not assigned", "unclassified", "uncategorized", "unknown", "n/a", "none", "-")
@@ -334,8 +334,8 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     out = [] if kind is None else [one for one in _spelt(of, kind.group(1).split()) if _pictures(of, one)]
     out += [] if start is None else _spelt(of, WORD.findall(start.group()))
     part = _OF_SERVICE.search(folded)
-    inner = [] if part is None else WORD.findall(BREAK.split(part.group(1))[0])
-    out += _spelt(of, inner[-1:]) if inner else []
+    for inner in () if part is None else (BREAK.split(part.group(1))[0], part.group(1)):
+        out += (*_spelt(of, WORD.findall(inner)), *_spelt(of, WORD.findall(inner)[-1:]))
     out += _inverted(folded, of)
     only = _PART.search(folded)
     if only is not None:
@@ -407,7 +407,7 @@ def _inverted(folded: str, of: RuleTable) -> Iterator[str]:
 
 def _spelt(of: RuleTable, words: list[str]) -> Iterator[str]:
     """Yield a phrase as the table spells it."""
-    for form in forms(words[-1]):
+    for form in forms(words[-1]) if words else ():
         phrase = " ".join((*words[:-1], form))
         if phrase in of.by_word:
             yield phrase
