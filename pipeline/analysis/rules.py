@@ -62,6 +62,10 @@ ANY_LIGHT = frozenset({"lamp", "light", "lampe", "lampada", "lampara", "lampa", 
 """Words that name a light of any kind, folded."""
 LIDS = frozenset({"lid", "cover", "deckel", "couvercle", "coperchio", "tapa", "deksel", "capac", "tampa"})
 """Words of what a thing may have and be no other kind for it, folded."""
+FRAGMENTS = frozenset(
+    {"fragment", "fragments", "sherd", "sherds", "frammento", "fragmento", "fragmente", "scherbe", "bruchstuck", "tesson"}
+)
+"""Words of what is left of a thing, folded: a title that says so goes before an object name that does not."""
 _MADE_OF = re.compile(r"木造|木彫|一木造|寄木造|[銅石鉄塑]造|塑像|(?:脱活)?乾漆|金銅|鋳銅|青銅|[陶磁石木銅鉄]製")
 """What a Japanese title begins with that says what its thing is made of: no picture is called so."""
 _OF_STUFF = re.compile(
@@ -288,7 +292,7 @@ def _narrows(title: RuleMatch, name: RuleMatch, item: Item) -> bool:
     carved = fold(item.object_name).strip() in _SCULPTURES and (
         title.rule.object_class in _CARVED or title.rule.name == LIGHTS[1] or bool(_MASK.match(title.word))
     )
-    return hangs or longer or carved
+    return hangs or longer or carved or (bool(thing) and kind.rpartition(" ")[2] in FRAGMENTS)
 
 
 def _wordless(item: Item, kinds: frozenset[str], of: RuleTable) -> tuple[RuleMatch | None, RuleMatch | None]:
