@@ -32,8 +32,8 @@ from pipeline.analysis.shapes import SHAPES, faceless
 from pipeline.collection.dimensions.lexicon import words_for
 from pipeline.records import Item
 from pipeline.tables import table
-from pipeline.tables.rows import Text, checked, once
 from pipeline.tables.assumed_rows import WHEN_HELD
+from pipeline.tables.rows import Text, checked, once
 
 BIAS = "any"
 """The sign that every object has."""
@@ -82,7 +82,7 @@ FACE = 0.5
 SURE = 0.5
 """Probability from which materials and measures alone say a class, or that a thing is a sculpture or the like."""
 UNNAMED_SURE = 0.8
-"""The same where there is nothing but a name that the rules do not know (judgement: what may stand is held to stand)."""
+"""The same where nothing but a name is said, which the rules do not know: what may stand is held to (judgement)."""
 RATHER = 0.35
 """The same of a body that is the likeliest class beside a bare material and a free title."""
 FACED = 0.3

@@ -42,8 +42,10 @@ _KIND = re.compile(r"\(\s*([^()]+?)\s*\)\s*$")
 """What stands in brackets at the end and may say what the thing itself is: Brasão (desenho)."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
 """What a maker calls a thing, which is no model of it: Clock Model No. 101."""
-_IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])|,\s*miniature\s*$")
-"""What stands ahead of a thing made small, or behind a comma: miniature furniture and a vase, miniature, are no pictures."""
+_IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])")
+"""What stands ahead of a thing made small: miniature furniture is no picture."""
+_SMALL_BEHIND = re.compile(r",\s*miniature\s*$")
+"""The same in inverted order: a vase, miniature, is no picture."""
 _THINGS = ("vessel", "dish", "seat", "table", "cabinet", "clock", "figurine")
 _NOT_THINGS = (
     *("plate", "glass", "block", "group", "animal", "container", "figure", "tray", "stand"),
@@ -63,7 +65,18 @@ ANY_LIGHT = frozenset({"lamp", "light", "lampe", "lampada", "lampara", "lampa", 
 LIDS = frozenset({"lid", "cover", "deckel", "couvercle", "coperchio", "tapa", "deksel", "capac", "tampa"})
 """Words of what a thing may have and be no other kind for it, folded."""
 FRAGMENTS = frozenset(
-    {"fragment", "fragments", "sherd", "sherds", "frammento", "fragmento", "fragmente", "scherbe", "bruchstuck", "tesson"}
+    {
+        "fragment",
+        "fragments",
+        "sherd",
+        "sherds",
+        "frammento",
+        "fragmento",
+        "fragmente",
+        "scherbe",
+        "bruchstuck",
+        "tesson",
+    }
 )
 """Words of what is left of a thing, folded: a title that says so goes before an object name that does not."""
 _MADE_OF = re.compile(r"木造|木彫|一木造|寄木造|[銅石鉄塑]造|塑像|(?:脱活)?乾漆|金銅|鋳銅|青銅|[陶磁石木銅鉄]製")
@@ -170,7 +183,7 @@ was looked at); in Romance and Slavic languages, where adjectives stand behind t
 _ADJECTIVE = re.compile(
     r"(?:[aoi]s?|[nk]y|ed|made|(?:ique|phe|aire|euse|eux|ante|ee|ale|elle|ien|ienne|ois|oise|ais|aise)s?|[^\x00-\x7f])$"
 )
-"""How an unknown word ends, folded, that may be an adjective behind its noun: vaso etrusco, masque funéraire, vase decorated."""
+"""How an unknown word ends, folded, that may be an adjective behind its noun: vaso etrusco, masque funéraire."""
 _SHORT = 2
 """Letters up to which an unknown word behind a noun is a number or the like: chair II."""
 _BLANK = ("", "(not assigned)", "not assigned", "unclassified", "uncategorized", "unknown", "n/a", "none", "-")
@@ -337,8 +350,8 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     kind = _KIND.search(folded)
     out = [] if kind is None else [one for one in _spelt(of, kind.group(1).split()) if _pictures(of, one)]
     out += [] if start is None else _spelt(of, WORD.findall(start.group()))
-    part = _OF_SERVICE.search(folded)
-    for inner in () if part is None else (BREAK.split(part.group(1))[0], part.group(1)):
+    piece = _OF_SERVICE.search(folded)
+    for inner in () if piece is None else (BREAK.split(piece.group(1))[0], piece.group(1)):
         out += (*_spelt(of, WORD.findall(inner)), *_spelt(of, WORD.findall(inner)[-1:]))
     out += _inverted(folded, of)
     only = _PART.search(folded)
@@ -368,7 +381,13 @@ def _believed_at(text: str, word: str, of: RuleTable) -> float:
     folded = _plain(text)
     part, kind = _PART.search(folded), _KIND.search(folded)
     lone = " " in word or IDEOGRAPH.search(word) or re.search(r"[/;|]", folded)
-    if lone or (part and part.group(1) == word) or (kind and _pictures(of, word) and kind.group(1).startswith(word)):
+    if (part and part.group(1) == word) or (kind and _pictures(of, word) and kind.group(1).startswith(word)):
+        return 1.0
+    inner = [] if kind is None else WORD.findall(kind.group(1))
+    said = [one for before, one in known(of, inner[-1]) if not before] if inner else []
+    if said and _class_of(of, said[0]) != _class_of(of, word):
+        return _HALF_KNOWN  # Sledge (hammer), Canister (shot)
+    if lone:
         return 1.0
     first = next((found for one in _parts(folded) if (found := WORD.findall(one))), [])
     for at in range(len(first) - 1, -1, -1):
@@ -376,6 +395,11 @@ def _believed_at(text: str, word: str, of: RuleTable) -> float:
             behind = [one for one in first[at + 1 :] if len(one) > _SHORT]
             return 1.0 if all(map(_ADJECTIVE.search, behind)) else _HALF_KNOWN
     return _HALF_KNOWN
+
+
+def _class_of(of: RuleTable, word: str) -> str:
+    """Return the class of the first rule that a known word or *ending has."""
+    return (of.by_word.get(word) or of.by_ending[word[1:]])[0].object_class
 
 
 def _parts(folded: str) -> Iterator[str]:
@@ -420,7 +444,7 @@ def _spelt(of: RuleTable, words: list[str]) -> Iterator[str]:
 @lru_cache(maxsize=4096)
 def _kinds(text: str) -> frozenset[str]:
     """Return a classification or object name, whole and in its parts, in the singular."""
-    folded = fold(text).strip().replace("&", "and")
+    folded = _SMALL_BEHIND.sub("", fold(text).strip().replace("&", "and"))
     if folded in _BLANK:
         return frozenset()
     parts = (folded, *re.split(r"[|;,/-]", folded))
