@@ -49,6 +49,7 @@ TABLE_WORDS = {
     "minutes": "How long a measurement takes at the object, in minutes.",
     "surfaces": "What objects stand on: by which words records tell it, alone or beside what is stood on, and on which "
     "furniture it is met by chance.",
+    "unknown_names": "How often things whose name rules.csv does not know are of each class.",
     "homographs": "Words that name other things in another language, and how far their class by rules.csv is believed.",
     "usual_sizes": "How large things of a class are [m], by which an import tells a unit that cannot be.",
     "survey": "The questions of the survey's sheet.",

@@ -72,7 +72,9 @@ def forms(word: str) -> tuple[str, ...]:
     if len(word) > 3:
         if word.endswith("ies"):
             able.append(word[:-3] + "y")
-        able.extend(word[: -len(end)] for end in ("s", "es", "n", "en", "x") if word.endswith(end))
+        bases = [word[: -len(end)] for end in ("s", "es", "n", "en", "x") if word.endswith(end)]
+        # tubes are no tubs, but boxes are boxes
+        able.extend(base for base in bases if len(base) >= _STEM + 2 or word != f"{base}es" or base[-1:] in "sxzho")
     if len(word) >= _PLURAL and word.endswith("e"):
         able.append(word[:-1])
     return tuple(able)

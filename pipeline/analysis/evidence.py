@@ -20,9 +20,11 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from itertools import starmap
 from math import log
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, Field
 
 from pipeline.analysis.rule_table import SHAPES, RuleMatch, RuleTable, faceless, fold, stuff, words_of
 from pipeline.analysis.rules import PICTURES, Readings, as_classed, readings, without_name
@@ -30,6 +32,7 @@ from pipeline.collection.dimensions.lexicon import words_for
 from pipeline.records import Item
 from pipeline.tables import table
 from pipeline.tables.assumed_rows import WHEN_HELD
+from pipeline.tables.rows import Text, checked, once
 
 BIAS = "any"
 """The sign that every object has."""
@@ -77,6 +80,8 @@ FACE = 0.5
 """Depth over the smaller side of its face up to which a thing may be a picture in its frame (judgement)."""
 SURE = 0.5
 """Probability from which materials and measures alone say a class, or that a thing is a sculpture or the like."""
+UNNAMED_SURE = 0.8
+"""The same where nothing but a name is said, which the rules do not know: what may stand is held to (judgement)."""
 RATHER = 0.35
 """The same of a body that is the likeliest class beside a bare material and a free title."""
 FACED = 0.3
@@ -90,6 +95,8 @@ It is what the scatter between museums that were left out leaves over: see pipel
 """
 SEVERAL, FIRST = 2, 2.0
 """Things from which an object name names several, and what the first of them counts for (judgement)."""
+BARE: Mapping[str, Any] = {"object_name": "?", "gallery": "", "height_m": None, "width_m": None, "depth_m": None}
+"""What a record says that has nothing but an object name, of which nothing is known."""
 _AND = re.compile(r"[;|\n]")
 """What parts several names of things in one cell."""
 _READ = 400
@@ -102,6 +109,12 @@ def _pictured_parts() -> re.Pattern[str]:
     """Return what finds what is measured of pictures alone: a frame, a sheet, an image, a canvas."""
     words = sorted(words_for("framed", "frame", "unframed", "sheet", "image", "sight"), key=len, reverse=True)
     return re.compile(rf"\b(?:support\s*:|(?:{'|'.join(map(re.escape, words))})\b)", re.IGNORECASE)
+
+
+class _UnknownName(BaseModel):
+    name: Annotated[Text, Field(alias="class")]
+    share: Annotated[float, Field(gt=0.0, lt=1.0)]
+    source: Text
 
 
 @dataclass(frozen=True)
@@ -171,6 +184,13 @@ def _title_alone(item: Item, read: Readings) -> tuple[str, ...]:
 def is_alone(item: Item, read: Readings) -> bool:
     """Say whether nothing but a title says what a thing is, and it may as well be what a picture shows."""
     return read.name is None and not any((item.object_name, item.classification, item.material, item.medium))
+
+
+def is_unknown(item: Item, read: Readings) -> bool:
+    """Say whether a record has an object name of which neither rules nor signs know a word, and no other words."""
+    if not read.silent or any((item.title, item.classification, item.material, item.medium)):
+        return False
+    return _signs_in("title", fold(item.object_name)) == ("title: nothing known",)
 
 
 def signs_of(item: Item, read: Readings) -> tuple[str, ...]:
@@ -265,6 +285,29 @@ def _chances(signs: tuple[str, ...]) -> tuple[Chance, ...]:
     return tuple(Chance(of.classes[at], float(shares[at])) for at in order)
 
 
+@cache
+def _unknown() -> NDArray[np.float64]:
+    """Return how often things whose name the rules do not know are of each class."""
+    rows = checked(_UnknownName, table("unknown_names"), "unknown_names.csv", named="class")
+    once((row.name for row in rows), "class", "unknown_names.csv")
+    shares = {row.name: row.share for row in rows}
+    return np.array([shares[name] for name in weights().classes])
+
+
+@lru_cache(maxsize=4096)
+def _of_unknown_name(signs: tuple[str, ...], bare: tuple[str, ...]) -> tuple[Chance, ...]:
+    """Return the chances of a thing of which nothing is said but a name that the rules do not know.
+
+    That is how often such things are of each class, times what its measures and department say.
+
+    signs, bare : the signs of the object, and of its name alone
+    """
+    of = weights()
+    shares = shares_of(np.log(_unknown()) + of.scores(signs) - of.scores(bare))
+    order = np.argsort(-shares, kind="stable")
+    return tuple(Chance(of.classes[at], float(shares[at])) for at in order)
+
+
 def chances_of(item: Item, read: Readings, among: RuleTable | None = None) -> tuple[Chance, ...]:
     """Return the probability of each class, the likeliest first.
 
@@ -278,6 +321,8 @@ def chances_of(item: Item, read: Readings, among: RuleTable | None = None) -> tu
     if read.outright:
         certain = IDENTIFIED if read.decided.evidence.startswith("AAT") else 1.0
         return (Chance(read.decided.rule.object_class, certain),)
+    if is_unknown(item, read):
+        return _of_unknown_name(signs_of(item, read), signs_of(replace(item, **BARE), read))
     shares = _several(item, read, among) or _believed(item, read, among)
     if not shares:
         return _chances(signs_of(item, read))
@@ -330,7 +375,7 @@ def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | 
         faced = item.height_m and item.width_m and (item.depth_m or 0.0) <= FACE * min(item.height_m, item.width_m)
         if item.title and (faced or not read.silent):
             return flat if first.object_class in _standing() and flat.probability >= PICTURED else first
-    if not read.silent or first.probability >= SURE:
+    if not read.silent or first.probability >= (UNNAMED_SURE if is_unknown(item, read) else SURE):
         return first
     if item.object_name or item.classification or not (item.material or item.medium):
         return None

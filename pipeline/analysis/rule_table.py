@@ -156,7 +156,7 @@ _SMALL_WORDS = (
     "με|απο|σε|για|του|της|και",
 )
 """Words of eleven languages, folded, that end the name of a thing: prepositions, joined articles, genitives."""
-BREAK = re.compile(rf"[,:;|()\[\]/\"]|\s(?:{'|'.join(_SMALL_WORDS)}|銘)\s|\s[dl]['\u2019]")
+BREAK = re.compile(rf"[,:;|()\[\]{{}}/\"]|\s(?:{'|'.join(_SMALL_WORDS)}|銘)\s|\s[dl]['\u2019]")
 """Where the name of a thing ends and its description begins."""
 _SUPPORT = re.compile(
     r"\b(?:on|in|with|and|recessed in|auf|sur|su|sobre|op)\s[^,;]{0,40}?\b(?:base|plinth|socle|pedestal)\b"
@@ -317,7 +317,8 @@ class RuleMatch:
     """The rule that decided, and what in the record made it hold ("" where the row asks for no name).
 
     word : the naming word that it found, an ending with its asterisk
-    share : how far it is believed: less than 1 where the record's own word is only akin to that one
+    share : how far it is believed: less than 1 where the record's own word is only akin to that one, names other
+            things too, or has words behind it that nobody knows
     """
 
     rule: Rule
