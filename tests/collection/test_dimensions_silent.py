@@ -50,8 +50,8 @@ def test_no_number_is_dropped(text: str, found: dict[str, float]) -> None:
     assert sizes(text) == pytest.approx(found, rel=1e-3)
 
 
-@pytest.mark.parametrize("text", ["30:40 cm", "30:40:20 cm"])
-def test_a_ratio_with_a_unit_of_length_is_no_time(text: str) -> None:
+@pytest.mark.parametrize("text", ["1:10 cm", "1:2:5 cm"])
+def test_a_scale_with_a_unit_of_length_is_neither_time_nor_size(text: str) -> None:
     read = parse(text)
     assert not read.having("left_out")
     assert read.having("remainder")
