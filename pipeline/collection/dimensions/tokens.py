@@ -63,8 +63,6 @@ _SAME_LENGTH = (
     (re.compile(rf"(?i)(?<=[^\W\d_]),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),  # Height, max.: 31 cm
     (re.compile(rf"(?i)(?<=[^\W\d_]\.),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),
     (re.compile(r"(?:(?<=\d/\d)|(?<=\d/\d\d)) / (?=\d)"), " x "),  # 5 1/2 / 3 1/4 in.
-    # 185:128:54 cm, 24,5 : 31 cm; 1:10 is a scale.
-    (re.compile(r"(?:(?<=\d)(?<!\b1)|(?<=\d )(?<!\b1 )):(?= ?\d+(?:[.,]\d+)?(?: ?: ?\d+(?:[.,]\d+)?)? ?[cm]m\b)"), "x"),
     (re.compile(r"(?i)\b(?:por|sur|per)(?=\s+\d)"), "x  "),  # 30 cm de alto por 20 de ancho
     (re.compile(r"(?i)(?:(?<=\bde )large\b|\blarge(?=\s+de\s+\d))"), "larg "),
     (re.compile(r"(?i)\bhors[ -]tout"), "horstout "),
@@ -82,6 +80,8 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\bhandle to spout\b"), "across across  "),
     (re.compile(r"(?<=\d)\+(?=\s*(?:[x×]|[cm]m\b|in\b|$))"), " "),  # 45+ x 20 cm: what is left of it
 )
+_COLONS = re.compile(r"(?<![\d:.,])\d+(?:[.,]\d+)?(?: ?: ?\d+(?:[.,]\d+)?){1,2}(?= ?[cm]m\b)")
+"""Sizes with colons between them, "185:128:54 cm"; 1:10 is a scale."""
 _LABELS_IN_BRACKETS = re.compile(r"\A\s*[\[(][^\W\d_]{1,10}\.?[\])]\s*\d")
 """A text that begins so, "[H] 45 [W] 20 cm", has each label before its number."""
 _IN_BRACKETS = re.compile(r"[\[(]([^\W\d_]{1,10}\.?)[\])](?=\s*\d)")
@@ -211,6 +211,8 @@ def _plain(text: str) -> str:
     text = text.translate(_ALIKE)
     for pattern, words in _SAME_LENGTH:
         text = pattern.sub(words, text)
+    if ":" in text:
+        text = _COLONS.sub(_unscaled, text)
     if _LABELS_IN_BRACKETS.match(text):
         text = _IN_BRACKETS.sub(lambda found: f" {found[1]} ", text)
     listed = "".join(_LISTED.findall(text)).lower()
@@ -218,6 +220,10 @@ def _plain(text: str) -> str:
         text = _LISTED.sub(lambda found: " " * len(found[0]), text)
     text = _THOUSANDS.sub(_joined, text)
     return _SLASHED.sub(_parted, text) if "/" in text else text
+
+
+def _unscaled(sizes: re.Match[str]) -> str:
+    return sizes[0] if sizes[0].startswith(("1:", "1 :")) else sizes[0].replace(":", "x")
 
 
 def _joined(parted: re.Match[str]) -> str:
