@@ -76,6 +76,8 @@ def test_texts_of_more_languages_are_read(language):
     ("text", "dimensions"),
     [
         ("L: 54 cm; l: 17 cm; H: 44 cm", ["length", "width", "height"]),
+        ("K 112 cm, L 58 cm, S 86 cm", ["height", "width", "depth"]),  # Finnish and Estonian
+        ("M: 178 cm, Sz: 62 cm, V: 48 cm", ["height", "width", "depth"]),  # Hungarian
         ("H. 12 cm ; l. 8 cm ; P. 5 cm", ["height", "width", "depth"]),
         ("L=55 cm; A=15 cm; Î=80 cm", ["length", "depth", "height"]),
         ("A. 45 cm; L. 30 cm; P. 12 cm", ["height", "width", "depth"]),

@@ -47,7 +47,10 @@ def test_a_room_alone(place: str) -> None:
     ("place", "room", "displayed"),
     [("Engine Hall, suspended from ceiling", "Engine Hall", "suspended from ceiling"),
      ("Saal 4, an der Wand", "Saal 4", "an der Wand"), ("Gallery 2 - on floor", "Gallery 2", "on floor"),
-     ("Atrium; hung overhead", "Atrium", "hung overhead"), ("Main Hall (suspended)", "Main Hall", "suspended")],
+     ("Atrium; hung overhead", "Atrium", "hung overhead"), ("Main Hall (suspended)", "Main Hall", "suspended"),
+     ("Näyttely 3 (ripustettu kattoon)", "Näyttely 3", "ripustettu kattoon"),
+     ("Зал 2, подвешен к потолку", "Зал 2", "подвешен к потолку"),
+     ("Sala 4, pod sufitem", "Sala 4", "pod sufitem"), ("Rum 2, hängande i taket", "Rum 2", "hängande i taket")],
 )  # fmt: skip
 def test_a_room_and_how_a_thing_is_held_there(place: str, room: str, displayed: str) -> None:
     assert parted(place) == (room, "", displayed)
