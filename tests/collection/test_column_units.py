@@ -232,3 +232,17 @@ def test_a_column_of_titles_and_descriptions_is_one_of_titles(head: str) -> None
     meaning = named(head)
     assert meaning is not None
     assert meaning.field == "title"
+
+
+@pytest.mark.parametrize(
+    ("text", "height"),
+    [
+        ("Length: 145cm nape to hem", 1.45),
+        ("Length at CB: 52 in. (132.1 cm)", 1.3208),
+        ("Length: 30 cm, hem 200 cm", None),
+        ("Length 90 cm", None),
+    ],
+)
+def test_a_garment_hangs_as_high_as_it_is_long(text: str, height: float | None) -> None:
+    chosen = choose(parse(text))
+    assert (chosen.height.value if chosen.height else None) == (height and pytest.approx(height, rel=1e-3))

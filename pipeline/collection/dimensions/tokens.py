@@ -75,6 +75,15 @@ _SAME_LENGTH = (
     (re.compile(r"(?<=[〕】]);"), " "),
     (re.compile(r"[〔【]"), " "),
     (re.compile(r"[〕】]"), ":"),
+    # A garment hangs as high as it is long: Length at CB: 52 in.; Length: 145cm nape to hem
+    (re.compile(r"(?i)\blength(?= (?:at |of )?(?:c\.?[bf]\b|cent(?:er|re) (?:back|front)))"), "height"),
+    (
+        re.compile(
+            r"(?i)\blength(?=[:.]?\s*[\d./½¼¾ ]+\s*(?:cm|mm|in\b|\")[^;\n\d]{0,20}"
+            r"\b(?:nape|hem|shoulders?|neck|collar|waist)\b)"
+        ),
+        "height",
+    ),
     # What is measured so is the whole, and no handle: W. handle to handle 12 in.
     (re.compile(r"(?i)\bhandle to handle\b"), "across across   "),
     (re.compile(r"(?i)\bhandle to spout\b"), "across across  "),
