@@ -79,8 +79,7 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\blength(?= (?:at |of )?(?:c\.?[bf]\b|cent(?:er|re) (?:back|front)))"), "height"),
     (
         re.compile(
-            r"(?i)\blength(?=[:.]?\s*[\d./½¼¾ ]+\s*(?:cm|mm|in\b|\")[^;\n\d]{0,20}"
-            r"\b(?:nape|hem|shoulders?|neck|collar|waist)\b)"
+            r"(?i)\blength(?=[:.]?\s*[\d./½¼¾ ]+\s*(?:cm|mm|in\b|\")[^;\n\d]{0,25}\bto (?:the )?(?:hem|waist|floor)\b)"
         ),
         "height",
     ),
