@@ -29,6 +29,9 @@ _HUNG_BY = re.compile(
 )
 """How long a line is that something hangs by: "by a chain of 2 m", "on 3 m cables"."""
 
+HANGS_FROM = 0.5
+"""Largest size [m] from which a title is believed that says that a thing hangs from above: judgement."""
+
 _ABOVE = (Support.HUNG, Support.SUSPENDED)
 
 _TO_STAND_ON = (Furniture.FLOOR, Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
@@ -45,6 +48,8 @@ def as_displayed(item: Item) -> Item:
         The record.
     """
     if not item.displayed.strip():
+        item = _as_titled(item)
+    if not item.displayed.strip():
         return item
     told = told_by(item.displayed)
     # Of what is recorded to hang or to stand the words for the other are about something else.
@@ -57,6 +62,17 @@ def as_displayed(item: Item) -> Item:
         furniture_anchorage=item.furniture_anchorage or told.anchorage,
         surface_material=item.surface_material or " and ".join(surfaces_in(item.displayed)),
     )
+
+
+def _as_titled(item: Item) -> Item:
+    """Return a record as displayed as its title says of a large thing that hangs: "Dinghy suspended above stairs".
+
+    A pendant is suspended from its chain: what is small is not meant.
+    """
+    open_ = item.support is None and item.furniture is None
+    large = max(item.height_m or 0.0, item.width_m or 0.0, item.depth_m or 0.0) >= HANGS_FROM
+    hangs = open_ and large and told_by(item.title).support is Support.SUSPENDED
+    return replace(item, displayed=item.title) if hangs else item
 
 
 def line_of(words: str) -> float | None:

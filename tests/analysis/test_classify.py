@@ -89,7 +89,14 @@ HELD = {"mass_kg": 2.0, "section_width_m": 0.02, "base_width_m": 0.1, "base_dept
         ("Mask", Support.FREESTANDING, {}, ()),
         ("Mask", Support.FREESTANDING, HELD, ()),
         ("Medal", Support.FREESTANDING, HELD, ()),
-        ("Oil painting", Support.FREESTANDING, {"medium": "oil on canvas"}, ("base width", "base depth")),
+        # What a panel on its edge stands on is as deep as it is; of one without a depth nobody knows.
+        ("Oil painting", Support.FREESTANDING, {"medium": "oil on canvas"}, ()),
+        (
+            "Oil painting",
+            Support.FREESTANDING,
+            {"medium": "oil on canvas", "depth_m": None},
+            ("base width", "base depth"),
+        ),
         ("Chandelier", Support.FASTENED, {"height_m": None}, ("width of its weakest section", "mass")),
         # A vessel's base and section follow from its size; what is made fast needs no base where its section is known.
         ("Vase", Support.FASTENED, {}, ()),

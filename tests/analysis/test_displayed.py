@@ -58,6 +58,17 @@ def test_what_hangs_from_the_ceiling_swings() -> None:
     assert any("as its record says of its display" in note for note in scene.assumptions)
 
 
+def test_a_title_that_says_that_a_large_thing_hangs_is_believed() -> None:
+    dinghy = Item("4", "Stairwell", object_name="dinghy", title="Clinker dinghy suspended above stairs", medium="wood",
+                  height_m=0.9, width_m=1.4, depth_m=3.6)  # fmt: skip
+    scene = classify(dinghy)
+    assert scene.support is Support.SUSPENDED
+    assert classify(replace(dinghy, title="Clinker dinghy")).support is Support.FREESTANDING
+    assert classify(replace(dinghy, furniture=Furniture.FLOOR)).support is Support.FREESTANDING
+    pendant = replace(dinghy, object_name="pendant", height_m=0.05, width_m=0.03, depth_m=0.01)
+    assert classify(pendant).support is not Support.SUSPENDED
+
+
 def test_a_plate_on_a_stand_leans_and_one_in_a_case_lies() -> None:
     """It comes away from what it leans on where the push exceeds g times the tangent of its lean, 8 to 25 degrees."""
     leaning, lying = classify(with_words(PLATE, "on plate stand")), classify(with_words(PLATE, "in showcase"))
