@@ -107,6 +107,18 @@ def test_numbers_tell_units_by_how_they_look() -> None:
     assert usual_unit([])[0] == "cm"
 
 
+def test_weights_that_mostly_name_their_units_are_read_as_written(tmp_path: Path) -> None:
+    """What says nothing in figures does not count against it, and is a doubt of its row."""
+    path = tmp_path / "list.csv"
+    cells = ['">100 kg"', "approx. 9 lbs.", "450-500 kg", "n/a", "1.5", "850g", "heavy"]
+    rows = [f"{at},Bust,Hall,60 cm,{cell}" for at, cell in enumerate(cells)]
+    path.write_text("\n".join(["Acc No,Object,Gallery,Height,Weight", *rows]), encoding="utf-8")
+    items = read_items(path, guess(path).mapping).items
+    told = [None if item.mass_kg is None else round(item.mass_kg, 3) for item in items]
+    assert told == [100.0, 4.082, 500.0, None, None, 0.85, None]
+    assert [bool(item.problems) for item in items] == [False, False, False, True, True, False, True]
+
+
 LIST = """Catalog #,Object,Home Location,Cur Location,H,W,D,Wt
 N-1,Buffalo skull,Storage A,Main Hall,22 1/2,24,16,
 N-2,Grizzly bear mount,Storage A,Main Hall,96,48,40,800

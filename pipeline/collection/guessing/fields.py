@@ -369,7 +369,9 @@ class Fields:
         if fractions and (unit in units or (unit is None and column.dimensional <= _NAMING and "m" in units)):
             return self._by_hand(column, unit or common)
         if unit is None and not column.numeric:
-            if column.dimensional <= _NAMING:
+            # "heavy" and "n/a" say nothing of how the others are written.
+            figured = sum(any(map(str.isdecimal, text)) for text in column.filled)
+            if column.dimensional * len(column.filled) <= _NAMING * figured:
                 what, unit = ("weights", "kg") if "kg" in units else ("lengths", "cm")
                 self.doubts.append(
                     f"column {column.name!r} holds neither numbers alone nor mostly {what} with units: left out; "
