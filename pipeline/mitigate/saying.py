@@ -29,6 +29,15 @@ AT_BEST = (
 SIZED = "It holds so by the best estimates of weight, base and strength: weigh it and measure its base first."
 """Follows the sentence of a fixing that has its factor of safety by the best estimates, and whose models all pass."""
 
+AT_BEST_WEIGHED = (
+    "It holds by the best estimates, and not at the worse ends of all that is assumed: "
+    "have its base and its weakest section measured first."
+)
+SIZED_WEIGHED = "It holds so by the best estimates of base and strength: measure its base first."
+"""The same of what was weighed: nobody weighs it again."""
+
+ONLY_AT_BEST, ONLY_SIZED = (AT_BEST, AT_BEST_WEIGHED), (SIZED, SIZED_WEIGHED)
+
 HEAVIEST = (
     "That is for {heaviest}, the most that it may weigh; by the best estimate it weighs {weight}: "
     "weigh it first: if it is lighter, the mount may be lighter in proportion."
@@ -165,7 +174,8 @@ def said_besides(
         more.append(HEAVIEST)
     if at_best or candidate.at_best:
         light = measure.sticks and mass is not None and mass.high <= limit("slight_mass").value
-        more.append(AT_BEST if at_best else BY_HAND if light else SIZED)
+        weighed = mass is not None and mass.origin is not Origin.ASSUMED
+        more.append(ONLY_AT_BEST[weighed] if at_best else BY_HAND if light else ONLY_SIZED[weighed])
     return tuple(first), tuple(filter(None, more)), added
 
 

@@ -22,14 +22,14 @@ from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
 from pipeline.mitigate.saying import (
     ANCHORED,
-    AT_BEST,
     ENGINEER,
     HEAVIEST,
     HELD_FIRST,
     OF_MEAN,
+    ONLY_AT_BEST,
     ONLY_HERE,
+    ONLY_SIZED,
     SAID_AS_IT_IS,
-    SIZED,
     UPPER_FIRST,
 )
 from pipeline.models import MODELS
@@ -105,8 +105,8 @@ def _of_measures() -> Iterator[str]:
         ENGINEER,
         FINISHED,
         ONLY_HERE,
-        AT_BEST,
-        SIZED,
+        *ONLY_AT_BEST,
+        *ONLY_SIZED,
         HEAVIEST,
         OF_MEAN,
         ANCHORED,

@@ -16,8 +16,10 @@ from pipeline.mitigate.saying import (
     HEAVIEST,
     HELD_FIRST,
     OF_MEAN,
+    ONLY_AT_BEST,
     SAID_AS_IT_IS,
     SIZED,
+    SIZED_WEIGHED,
     UPPER_FIRST,
 )
 from pipeline.quantities import G
@@ -55,6 +57,7 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
         Of a measure that is not known here, as one of another package, its title.
     """
     of_weight = times_weight(advice)
+    at_best = any(one in advice.sentence for one in ONLY_AT_BEST)
     told, numbers = _advised(advice, units, of_weight=of_weight)
     told += [said(row.care) for row in fixing_strengths().values() if row.care in advice.sentence]
     told += [said(one) for one in SAID_AS_IT_IS if one in advice.sentence]
@@ -68,18 +71,26 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
             if of_weight
             else _("That is for %(heaviest)s, the most that it may weigh; %(weight)s is likelier.")
         ) % numbers
-        told.append(heaviest if AT_BEST in advice.sentence else f"{_('Weigh it first.')} {heaviest}")
+        told.append(heaviest if at_best else f"{_('Weigh it first.')} {heaviest}")
     if NAMED_FIRST in advice.sentence:
         told.append(_("Before that, say what it is: for another kind of object this may not be enough."))
-    if AT_BEST in advice.sentence:
-        named = NAMED_FIRST in advice.sentence
+    named, weighed = NAMED_FIRST in advice.sentence, AT_BEST not in advice.sentence
+    if at_best and named:
         told.append(
-            _("Have it weighed too, and its base and weakest part measured.")
-            if named
+            _("Have its base and weakest part measured too.")
+            if weighed
+            else _("Have it weighed too, and its base and weakest part measured.")
+        )
+    elif at_best:
+        told.append(
+            _("This may not be enough: have its base and weakest part measured first.")
+            if weighed
             else _("This may not be enough: have it weighed and its base and weakest part measured first.")
         )
     elif SIZED in advice.sentence:
         told.append(_("Weigh it and measure its base first."))
+    elif SIZED_WEIGHED in advice.sentence:
+        told.append(_("Measure its base first."))
     return " ".join(told)
 
 
