@@ -41,7 +41,7 @@ from pipeline.records import Assessment, Axis, Chart, Excitation, Item, Scene, S
 from pipeline.resources import resource
 from pipeline.store import codec
 from pipeline.verification import selftest, tradeoff
-from pipeline.verification.self_measurement import Outcome
+from pipeline.verification.outcome import Outcome
 from tests.images.conftest import photograph
 
 LASTING = {SELF_TESTS, TRADEOFFS, THUMBNAILS}

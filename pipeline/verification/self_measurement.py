@@ -13,6 +13,7 @@ from pipeline.analysis.response import respond, trace
 from pipeline.models import MODELS
 from pipeline.quantities import Array, G, counted
 from pipeline.records import Model, Motion
+from pipeline.verification.outcome import Outcome
 
 STRONG = 5.0
 """Peak of each horizontal component of the shaking [m/s2]."""
@@ -129,35 +130,6 @@ def complaint(model: Model, row: Mapping[str, Any]) -> str:
         if float(value) < 0.0:
             return f"{column} is {value}"
     return ""
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What a case gave: result is not above limit where ok; problem is what stopped it.
-
-    Attributes
-    ----------
-    what, truth : str
-        The extreme, and what it is held against.
-    result : float or None
-        A relative error where the truth says nothing else; None where no number came out.
-    limit : float
-        The largest result that is accepted.
-    ok : bool
-        Whether the case passed.
-    seconds : float
-        What it took.
-    problem : str
-        What stopped it; "" where nothing did.
-    """
-
-    what: str
-    truth: str
-    result: float | None
-    limit: float
-    ok: bool
-    seconds: float
-    problem: str = ""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from pipeline import __version__
 from pipeline.cache import SELF_TESTS, Cache, CacheEntry
 from pipeline.quantities import counted
 from pipeline.settings import Settings
-from pipeline.verification.self_measurement import Outcome
+from pipeline.verification.outcome import Outcome
 
 LAST = "last"
 """Key under which the last self-test lies for the reports."""
