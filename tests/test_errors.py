@@ -34,7 +34,7 @@ INSIDE = {
     "report/pages/news.py",
     "store/news.py",
     "supports/__init__.py",
-    "supports/polygon.py",
+    "supports/refining.py",
     "verification/tradeoff.py",
 }
 

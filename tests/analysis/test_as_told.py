@@ -53,10 +53,11 @@ def test_without_a_footing_it_is_taken_as_such_things_are() -> None:
 def test_what_usually_hangs_and_stands_on_furniture_by_its_record_does_not_hang() -> None:
     on_plinth = classify(replace(STELE, furniture=Furniture.PEDESTAL))
     assert on_plinth.support is Support.FREESTANDING
-    # A block of one stone stands on its whole foot; of a relief in a frame that is to be measured.
+    # A block of one stone stands on its whole foot, a relief on its edge as deep as it is; else that is to be measured.
     assert on_plinth.missing == ()
     carved = replace(STELE, object_name="relief", medium="wood", furniture=Furniture.PEDESTAL)
-    assert classify(carved).missing == ("base width", "base depth")
+    assert classify(carved).missing == ()
+    assert classify(replace(carved, depth_m=None)).missing == ("base width", "base depth")
     # A thing that the record hangs, hangs.
     hooked = classify(replace(STELE, hanging=Hanging.TWO_HOOKS, base_width_m=0.6))
     assert hooked.support is Support.HUNG
