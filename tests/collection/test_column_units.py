@@ -258,3 +258,11 @@ def test_a_column_of_titles_and_descriptions_is_one_of_titles(head: str) -> None
 def test_a_garment_hangs_as_high_as_it_is_long(text: str, height: float | None) -> None:
     chosen = choose(parse(text))
     assert (chosen.height.value if chosen.height else None) == (height and pytest.approx(height, rel=1e-3))
+
+
+@pytest.mark.parametrize(
+    ("text", "kg"), [("12 st 4 lb", 172 * 0.45359237), ("Weight: 3 stone", 42 * 0.45359237), ("3 st", None)]
+)
+def test_stones_are_fourteen_pounds_and_pieces_are_none(text: str, kg: float | None) -> None:
+    mass = choose(parse(text)).mass
+    assert (mass.value if mass else None) == (kg and pytest.approx(kg))
