@@ -9,6 +9,9 @@ from pipeline.tables.held_rows import CASES, told_by, words_for
 from pipeline.tables.rows import any_of
 
 _SEPARATOR = re.compile(r"\s*[,;/>|]\s*|:\s+|\s+[-–—]\s+")
+LONGEST = 300
+"""Characters beyond which a text names no place that could be parted."""
+
 _ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
 _SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS."""
@@ -41,6 +44,8 @@ def parted(text: str) -> NamedPlace:
         As the museum writes it: "Gallery 1, case 3", "Atrium, suspended from the ceiling", "Hall (hung)". One
         that names a case and no room, "Vitrine 3", is both.
     """
+    if len(text) > LONGEST:
+        return NamedPlace(text)
     enclosed = _ENCLOSED.fullmatch(text)
     if enclosed and _tells(enclosed[2]):
         return NamedPlace(enclosed[1], displayed=enclosed[2])

@@ -10,6 +10,7 @@ from pipeline.collection.dimensions import choose, parse
 from pipeline.collection.guess import guess
 from pipeline.collection.guessing.names import named, unit_in
 from pipeline.collection.guessing.units import usual_unit
+from pipeline.collection.places import parted
 from pipeline.collection.reading import read_items
 
 HEADS = [
@@ -266,3 +267,13 @@ def test_a_garment_hangs_as_high_as_it_is_long(text: str, height: float | None) 
 def test_stones_are_fourteen_pounds_and_pieces_are_none(text: str, kg: float | None) -> None:
     mass = choose(parse(text)).mass
     assert (mass.value if mass else None) == (kg and pytest.approx(kg))
+
+
+@pytest.mark.parametrize(
+    "hostile", ["(," * 50_000, "x (" * 50_000 + "cm)", "length" + " " * 100_000, "1:" * 50_000 + "cm"]
+)
+def test_hostile_heads_places_and_texts_cost_no_more_than_their_length(hostile: str) -> None:
+    """Each would take hours, were it looked through from each of its characters on: the test would not end."""
+    assert unit_in(hostile)[1] is None
+    assert parted(hostile) == (hostile, "", "")
+    assert parse(hostile).having("truncated")

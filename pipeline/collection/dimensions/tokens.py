@@ -83,7 +83,8 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\blength(?= (?:at |of )?(?:c\.?[bf]\b|cent(?:er|re) (?:back|front)))"), "height"),
     (
         re.compile(
-            r"(?i)\blength(?=[:.]?\s*[\d./½¼¾ ]+\s*(?:cm|mm|in\b|\")[^;\n\d]{0,25}\bto (?:the )?(?:hem|waist|floor)\b)"
+            r"(?i)\blength(?=[:.]? ?\d{1,4}(?:[.,]\d{1,3}| \d{1,2}/\d{1,2}|[½¼¾])? ?(?:cm|mm|in\b|\")"
+            r"[^;\n\d]{0,25}\bto (?:the )?(?:hem|waist|floor)\b)"
         ),
         "height",
     ),

@@ -51,6 +51,9 @@ _WORDS = frozenset({"m", "g", "in"})
 _ENDS = frozenset({"mm", "cm", "m", "in", "ft", "kg", "g", "gr", "lb", "lbs", "oz"})
 """What is a unit at the end of a head, of all short Latin words."""
 
+LONGEST = 200
+"""Characters of a head beyond which it is none, and nothing is looked for in it."""
+
 _EMPTY = re.compile(rf"[{re.escape(_OPEN)}][\s,;:]*[{re.escape(_CLOSE)}]")
 _LOOSE = re.compile(rf"[\s,;:]+(?=[{re.escape(_CLOSE)}])|(?<=[{re.escape(_OPEN)}])[\s,;:]+")
 
@@ -68,7 +71,7 @@ def told_unit(name: str) -> tuple[str, str | None]:
     (str, str or None)
         None where it names none, or nothing but that.
     """
-    found = [one for one in _NAMED.finditer(name) if _is_unit(name, one)]
+    found = [one for one in _NAMED.finditer(name) if _is_unit(name, one)] if len(name) <= LONGEST else []
     for able in _PLACES:
         for one in found:
             rest = _LOOSE.sub("", _EMPTY.sub(" ", f"{_before(name, one)} {name[one.end() :]}")).strip()
