@@ -8,7 +8,7 @@ from textwrap import shorten
 from pipeline.records import Furniture, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
-from pipeline.tables.held_rows import CASES, told_by, words_for
+from pipeline.tables.held_rows import CASES, hangs_above, told_by, words_for
 from pipeline.tables.rows import any_of
 from pipeline.tables.surface_rows import surfaces_in
 
@@ -71,8 +71,7 @@ def _as_titled(item: Item) -> Item:
     """
     open_ = item.support is None and item.furniture is None
     large = max(item.height_m or 0.0, item.width_m or 0.0, item.depth_m or 0.0) >= HANGS_FROM
-    hangs = open_ and large and told_by(item.title).support is Support.SUSPENDED
-    return replace(item, displayed=item.title) if hangs else item
+    return replace(item, displayed=item.title) if open_ and large and hangs_above(item.title) else item
 
 
 def line_of(words: str) -> float | None:

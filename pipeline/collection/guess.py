@@ -25,7 +25,6 @@ from pipeline.collection.guessing.columns import texts_of_dimensions as texts_am
 from pipeline.collection.guessing.fields import (
     Fields,
     Question,
-    asked_unit,
     decimal_of,
     flag_among,
     images_among,
@@ -33,8 +32,8 @@ from pipeline.collection.guessing.fields import (
     tells_display,
 )
 from pipeline.collection.guessing.headings import place_by_heading
-from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named, unit_in
-from pipeline.collection.guessing.orders import language_of, order_of, unit_of_texts
+from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named
+from pipeline.collection.guessing.orders import section_of
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -50,9 +49,7 @@ from pipeline.collection.guessing.within import labels_within, parting, place_am
 from pipeline.collection.mapping import MAPPABLE, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.places import parted
-from pipeline.collection.record import units_of
 from pipeline.collection.sources.address import expand_secrets
-from pipeline.collection.sources.measurements import IN_WORDS
 from pipeline.collection.sources.registry import is_address
 from pipeline.collection.sources.tables import as_database
 
@@ -286,7 +283,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     wanted = told.choices.get("dimensions")
     if wanted is not None:
         texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
-    if not texts and wanted is None and not {"height_m", "width_m", "depth_m", "diameter_m"} & set(fields):
+    if not texts and wanted is None and fields.keys().isdisjoint(_SIDES):
         apart = {id(found.get(field)) for field in ("object_number", "gallery", "on_display", "image")}
         may = [column for column in columns if id(column) not in apart]
         behind = captions_of_dimensions(may) or prose_of_dimensions(columns, used)
@@ -305,23 +302,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
                 "each; --choose dimensions=COLUMN leaves them"
             )
     if texts:
-        document["dimensions"] = {"columns": [column.name for column in texts]}
-        prose += [one for one in texts if one.prose and one not in prose and IN_WORDS not in one.name]
-        if prose:
-            document["dimensions"]["prose"] = [column.name for column in prose]
-        units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
-        language, said = language_of(texts)
-        if language:
-            document["dimensions"]["language"] = language
-            told.doubts.append(said)
-        if unit := told.choices.get("unit") or (
-            units.pop() if len(units) == 1 else _untold(texts, language, prose, told)
-        ):
-            document["dimensions"]["unit"] = unit
-        order, said = order_of(texts)
-        if order:
-            document["dimensions"]["order"] = list(order)
-        told.doubts += [said] * bool(said)
+        document["dimensions"] = section_of(texts, prose, told)
     taken = {id(column) for column in (*used, *texts)}
     left = [column for column in columns if id(column) not in taken and column.filled]
     # What measurements in rows of their own call a length is read.
@@ -343,7 +324,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
             "nothing tells what is on display: all objects that have a place are; --choose on_display=COLUMN names one "
             "that says it, and [display] not_on_display in the mapping names stores"
         )
-    if not texts and not {"height_m", "width_m", "depth_m", "diameter_m"} & set(fields):
+    if not texts and fields.keys().isdisjoint(_SIDES):
         told.doubts.append(
             "no column with sizes was found; --choose height_m=COLUMN (and so on), or --choose dimensions=COLUMN for "
             "texts such as 12 x 5 cm"
@@ -351,16 +332,6 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     text = tomlkit.dumps(document)
     proposal = Proposal.model_validate(document.unwrap())
     return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure))
-
-
-def _untold(texts: Sequence[Column], language: str, prose: Sequence[Column], told: GuessNotes) -> str:
-    """Return the unit of dimension texts that name none, and say so; "" for none."""
-    untold = unit_of_texts(texts, language, prose)
-    told.doubts += [untold.said] * bool(untold.said)
-    if not untold.numbers:
-        return untold.unit
-    named = [column.name for column in texts if column not in prose]
-    return asked_unit(named, untold.numbers, told.doubts, told.questions)
 
 
 def _add_misspelt(columns: Sequence[Column], able: dict[str, list[Column]], told: GuessNotes) -> None:

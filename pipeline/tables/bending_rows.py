@@ -7,7 +7,7 @@ from types import MappingProxyType
 from pydantic import Field, ValidationInfo, field_validator
 
 from pipeline.tables import Range, table
-from pipeline.tables.rows import Number, RangeRow, TableRow, Text, checked, once, share_in_order
+from pipeline.tables.rows import NamedRange, Number, TableRow, Text, checked, named_ranges, once, share_in_order
 
 
 class SlenderRow(TableRow):
@@ -40,10 +40,8 @@ class SlenderRow(TableRow):
         return Range(self.slender, self.slender_low, self.slender_high, f"slender.csv ({self.source})")
 
 
-class BendingRow(RangeRow):
+class BendingRow(NamedRange):
     """A row of bending.csv: a number that holds for whatever bends [-]."""
-
-    name: Text
 
 
 @cache
@@ -64,7 +62,6 @@ def slender_shares() -> Mapping[str, Range]:
     return MappingProxyType({row.object_class: row.range for row in rows})
 
 
-@cache
 def bending(name: str) -> Range:
     """Return a number of bending.csv.
 
@@ -85,6 +82,4 @@ def bending(name: str) -> Range:
     KeyError
         For another name.
     """
-    rows = checked(BendingRow, table("bending"), "bending.csv", named="name")
-    once((row.name for row in rows), "name", "bending.csv")
-    return {row.name: row.range for row in rows}[name]
+    return named_ranges(BendingRow, "bending")[name]

@@ -74,6 +74,19 @@ def _says(pattern: re.Pattern[str], row: HeldWords, text: str) -> bool:
     return any(not (holds and BUT_NOT.search(text[: one.start()])) for one in pattern.finditer(text))
 
 
+def hangs_above(text: str) -> bool:
+    """Whether a text tells that a thing hangs from above; of most titles no row need be asked, which costs 0.3 ms."""
+    folded = text.casefold()
+    return any(word in folded for word in _above()) and told_by(text).support is Support.SUSPENDED
+
+
+@cache
+def _above() -> frozenset[str]:
+    """Return the longest part of each of the words for hanging from above: without it the words are not there."""
+    words = (word for _, row in _rows() if row.support is Support.SUSPENDED for word in row.words)
+    return frozenset(max(re.split(r"[\s*=]+", word), key=len).casefold() for word in words)
+
+
 @lru_cache(maxsize=4096)
 def told_by(text: str) -> HeldAs:
     """Return what a text tells of how a thing is displayed.

@@ -1,25 +1,21 @@
 """Rows of limits.csv: how much anybody trusts shelves, wax, putty and loose furniture with."""
 
-from functools import cache
-
-from pipeline.tables import Range, table
-from pipeline.tables.rows import RangeRow, Text, checked, once
+from pipeline.tables import Range
+from pipeline.tables.rows import NamedRange, Text, named_ranges
 
 
-class LimitRow(RangeRow):
+class LimitRow(NamedRange):
     """A row of limits.csv: a limit of what is advised, with how far other judgements would have it.
 
     Attributes
     ----------
-    name, unit : str
-        Which limit, and its unit.
+    unit : str
+        Of its numbers.
     """
 
-    name: Text
     unit: Text
 
 
-@cache
 def limit(name: str) -> Range:
     """Return a limit of limits.csv.
 
@@ -40,6 +36,4 @@ def limit(name: str) -> Range:
     KeyError
         For another name.
     """
-    rows = checked(LimitRow, table("limits"), "limits.csv", named="name")
-    once((row.name for row in rows), "name", "limits.csv")
-    return {row.name: row.range for row in rows}[name]
+    return named_ranges(LimitRow, "limits")[name]

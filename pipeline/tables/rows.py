@@ -3,6 +3,8 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
+from functools import cache
+from types import MappingProxyType
 from typing import Annotated, TypeVar
 
 from pydantic import (
@@ -18,7 +20,7 @@ from pydantic import (
 )
 
 from pipeline.errors import InputError
-from pipeline.tables import Range, Row, TableError
+from pipeline.tables import Range, Row, TableError, table
 
 Model = TypeVar("Model")
 RowOfWay = TypeVar("RowOfWay", bound="TableRow")
@@ -214,6 +216,34 @@ def any_of(words: Iterable[str]) -> re.Pattern[str]:
     parted = [pattern for word, pattern in escaped if not _UNPARTED.match(word)]
     # One boundary for all: to look for it before each word took four times as long.
     return re.compile("|".join([*within, *([rf"\b(?:{'|'.join(parted)})\b"] if parted else [])]), re.IGNORECASE)
+
+
+class NamedRange(RangeRow):
+    """A row of a table of numbers, each called by its name."""
+
+    name: Text
+
+
+@cache
+def named_ranges(kind: type[NamedRange], name: str) -> Mapping[str, Range]:
+    """Return the numbers of a table by their names.
+
+    Parameters
+    ----------
+    kind : type of NamedRange
+        Of its rows.
+    name : str
+        Of the table.
+
+    Raises
+    ------
+    TableError
+        Naming the line of the table.
+    """
+    file = f"{name}.csv"
+    rows = checked(kind, table(name), file, named="name")
+    once((row.name for row in rows), "name", file)
+    return MappingProxyType({row.name: row.range for row in rows})
 
 
 def once(values: Iterable[str], column: str, file: str) -> None:

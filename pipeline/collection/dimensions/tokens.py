@@ -75,10 +75,7 @@ _SAME_LENGTH = (
     (re.compile(r"(?<=[〕】]);"), " "),
     (re.compile(r"[〔【]"), " "),
     (re.compile(r"[〕】]"), ":"),
-    (
-        re.compile(r"(?i)(?<=\d )st(?=\.? ?\d+(?:\.\d+)? ?lbs?\b)|(?<=\d)st(?=\.? ?\d+(?:\.\d+)? ?lbs?\b)"),
-        "ſt",
-    ),  # 12 st 4 lb
+    (re.compile(r"(?i)(?<=\d)( ?)st(?=\.? ?\d+(?:\.\d+)? ?lbs?\b)"), r"\1ſt"),  # 12 st 4 lb
     # A garment hangs as high as it is long: Length at CB: 52 in.; Length: 145cm nape to hem
     (re.compile(r"(?i)\blength(?= (?:at |of )?(?:c\.?[bf]\b|cent(?:er|re) (?:back|front)))"), "height"),
     (

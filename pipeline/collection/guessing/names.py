@@ -16,6 +16,7 @@ from pipeline.collection.guessing.units import told_unit
 from pipeline.collection.mapping import MAPPABLE
 from pipeline.collection.record import units_of
 from pipeline.collection.sources.heads import BETWEEN
+from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.errors import InputError
 from pipeline.tables import table
 from pipeline.tables.ideographs import shortened_signs
@@ -32,7 +33,6 @@ LENGTH = "length_m"
 
 _JOINED = re.compile(r"(\w{4,}?)(mm|cm|in|ft|kg|lb|lbs|oz)", re.IGNORECASE)
 """A name of one word that ends with a unit: "HEIGHTIN", "weightKg"."""
-_UNIT = {"inch": "in", "inches": "in", "lbs": "lb", "gr": "g"}
 _NUMBER_WORDS = frozenset(
     ["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar", "αρ", "αριθμοσ", "numarasi"]
 )
@@ -249,7 +249,7 @@ def unit_in(name: str) -> tuple[str, str | None]:
     joined = _JOINED.fullmatch(name.strip())
     if joined is not None:
         said = _names().get(plain(joined[1]))
-        unit = _UNIT.get(joined[2].casefold(), joined[2].casefold())
+        unit = unit_of(joined[2])
         if said is not None and unit in units_of("height_m" if said.field == LENGTH else said.field):
             return joined[1], unit
     return name, None

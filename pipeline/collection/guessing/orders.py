@@ -10,13 +10,18 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
+from typing import Any
 
 from pipeline.collection.dimensions import labels, languages, parse
 from pipeline.collection.dimensions.choice import USUAL
 from pipeline.collection.dimensions.result import DimensionPart
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
-from pipeline.collection.guessing.names import LEGEND
+from pipeline.collection.guessing.fields import asked_unit
+from pipeline.collection.guessing.names import LEGEND, unit_in
+from pipeline.collection.guessing.source import GuessNotes
+from pipeline.collection.record import units_of
+from pipeline.collection.sources.measurements import IN_WORDS
 from pipeline.quantities import counted
 
 FEWEST = 3
@@ -40,6 +45,52 @@ _SOME = 1000
 _SIDES = frozenset({"height", "width", "depth", "length", "diameter"})
 _JOINED = re.compile(r"[x×]", re.IGNORECASE)
 _NUMBER = re.compile(r"(?:\d+\s+)?\d+/\d+|\d+(?:[.,]\d+)?[½¼¾⅛⅜⅝⅞]?", re.ASCII)
+
+
+def section_of(texts: Sequence[Column], prose: Sequence[Column], told: GuessNotes) -> dict[str, Any]:
+    """Return how the texts of dimensions are read, the section [dimensions] of a mapping; say what is taken, and ask.
+
+    Parameters
+    ----------
+    texts : sequence of Column
+        Those that are read.
+    prose : sequence of Column
+        Those of them that were taken for their sentences.
+    told : GuessNotes
+        What a person chose; what is said and asked goes there.
+
+    Returns
+    -------
+    dict
+        By its keys.
+    """
+    section: dict[str, Any] = {"columns": [column.name for column in texts]}
+    prose = [*prose, *(one for one in texts if one.prose and one not in prose and IN_WORDS not in one.name)]
+    if prose:
+        section["prose"] = [column.name for column in prose]
+    language, said = language_of(texts)
+    if language:
+        section["language"] = language
+        told.doubts.append(said)
+    units = {unit_in(column.name)[1] for column in texts} & units_of("height_m").keys()
+    unit = told.choices.get("unit") or (units.pop() if len(units) == 1 else _untold(texts, language, prose, told))
+    if unit:
+        section["unit"] = unit
+    order, said = order_of(texts)
+    if order:
+        section["order"] = list(order)
+    told.doubts += [said] * bool(said)
+    return section
+
+
+def _untold(texts: Sequence[Column], language: str, prose: Sequence[Column], told: GuessNotes) -> str:
+    """Return the unit of dimension texts that name none, and say so; "" for none."""
+    untold = unit_of_texts(texts, language, prose)
+    told.doubts += [untold.said] * bool(untold.said)
+    if not untold.numbers:
+        return untold.unit
+    named = [column.name for column in texts if column not in prose]
+    return asked_unit(named, untold.numbers, told.doubts, told.questions)
 
 
 def order_of(columns: Sequence[Column]) -> tuple[tuple[str, ...], str]:
@@ -118,8 +169,6 @@ class UntoldUnits:
 
     Attributes
     ----------
-    texts : int
-        How many there are.
     unit : str
         That of the others, where they are alike, and it would not make the texts of quite another size; else "".
     numbers : tuple of str
@@ -128,7 +177,6 @@ class UntoldUnits:
         What to say of it; "" for nothing.
     """
 
-    texts: int = 0
     unit: str = ""
     numbers: tuple[str, ...] = ()
     said: str = ""
@@ -149,7 +197,7 @@ def unit_of_texts(columns: Sequence[Column], language: str, prose: Sequence[Colu
     Returns
     -------
     UntoldUnits
-        Of no texts where all name one.
+        Empty where all name one.
     """
     held = {id(column) for column in prose}
     texts = [(plain_text(text), id(column) in held) for column in columns for text in column.distinct[:_SOME]]
@@ -161,7 +209,7 @@ def unit_of_texts(columns: Sequence[Column], language: str, prose: Sequence[Colu
     # A few that name one stray from how the house writes.
     if len(told) < FEWEST_UNITS and len(told) < len(bare):
         numbers = [number for text, sentences in bare if not sentences for number in _NUMBER.findall(text)]
-        return UntoldUnits(len(bare), numbers=tuple(numbers))
+        return UntoldUnits(numbers=tuple(numbers))
     unit, often = Counter(parts[0].unit for parts in told).most_common(1)[0]
     theirs = median(_largest(parts) for parts in told)
     others = median(
@@ -170,12 +218,10 @@ def unit_of_texts(columns: Sequence[Column], language: str, prose: Sequence[Colu
     )
     if len(told) < FEWEST_UNITS or often < ALIKE * len(told) or not theirs / FARTHEST < others < theirs * FARTHEST:
         return UntoldUnits(
-            len(bare),
             said=f"{counted(len(bare), 'text')} of sizes without a unit: not read; --choose unit=cm (mm, in, ...) "
             "takes one for all of these",
         )
     return UntoldUnits(
-        len(bare),
         unit,
         said=f"{len(bare)} texts name no unit: read in {unit}, as {often} of {len(told)} others have it; take unit out "
         "of [dimensions] where that is wrong",
