@@ -81,9 +81,9 @@ def mass_of(
     fill = own or row.filled
     # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
     by_volume = fill is not None and item.depth_m is not None and material.name != UNKNOWN
-    scroll = _SCROLL.search(f"{item.object_name} {item.title}") is not None
-    unframed = scroll or (row.name != FRAMED and not thick)
-    cloth = material.name == CLOTH and unframed and support is Support.HUNG
+    cloth = (material.name == CLOTH and support is Support.HUNG) and (
+        (row.name != FRAMED and not thick) or _SCROLL.search(f"{item.object_name} {item.title}") is not None
+    )
     wall = (_CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
     face = {Support.HUNG: wall, Support.SUSPENDED: (_SUSPENDED, say.MASS_OF_SUSPENDED)}
     per_area, face_phrase = (_SCREEN, say.MASS_OF_SCREEN) if screen else face.get(support, (None, None))

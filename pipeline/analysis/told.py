@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import cache
 from textwrap import shorten
 
+from pipeline.quantities import LENGTHS
 from pipeline.records import Furniture, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
@@ -22,7 +23,6 @@ _LINES = (
     r"(?:wires?|cables?|chains?|ropes?|cords?|rods?|lines?|Kette[n]?|Seile?n?|Stahlseile?n?|Drähten?|Draht|chaînes?|"
     r"câbles?|cordes?|caten[ae]|cav[io]|cadenas?|cables?|αλυσίδα|συρματόσχοινο)"
 )
-_METRES = {"m": 1.0, "cm": 0.01, "ft": 0.3048, "feet": 0.3048}
 _LONG = r"(\d{1,3}(?:[.,]\d{1,3})?)\s?(m|cm|ft|feet)\b"
 _HUNG_BY = re.compile(
     rf"\b{_LINES} (?:of|von|de|di|da|,) ?{_LONG}|(?<![\d.,]){_LONG}(?:[ -]long)? {_LINES}\b", re.IGNORECASE
@@ -85,8 +85,8 @@ def line_of(words: str) -> float | None:
     found = _HUNG_BY.search(words)
     if found is None:
         return None
-    number, unit = (one for one in found.groups() if one is not None)
-    return float(number.replace(",", ".")) * _METRES[unit.lower()] or None
+    number, unit = (one.lower() for one in found.groups() if one is not None)
+    return float(number.replace(",", ".")) * LENGTHS["ft" if unit == "feet" else unit] or None
 
 
 def held_as_displayed(item: Item, support: Support) -> bool:
