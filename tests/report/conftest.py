@@ -36,6 +36,13 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
     from selenium.webdriver import Chrome
     from selenium.webdriver.chrome.options import Options
     from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.support.wait import WebDriverWait
+
+    class Patient(Chrome):
+        def get(self, url: str) -> None:
+            """On a busy machine the driver's own wait now and then ends while the page is still being read."""
+            super().get(url)
+            WebDriverWait(self, 60.0).until(lambda c: c.execute_script("return document.readyState") == "complete")
 
     options = Options()
     options.binary_location = str(CHROMIUM)
@@ -52,6 +59,6 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
     ):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    chrome = Chrome(options=options, service=Service(str(DRIVER)))
+    chrome = Patient(options=options, service=Service(str(DRIVER)))
     yield chrome
     chrome.quit()
