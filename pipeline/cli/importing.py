@@ -167,8 +167,10 @@ def _guess(
             "questions": [asdict(question) for question in found.guess.questions],
             "sure": found.guess.sure,
             "unknown": found.unknown,
-            "rows": found.rows,
+            "rows": found.reading.rows,
             "examples": found.examples,
+            "rejected": [asdict(r) for r in found.reading.rejected],
+            "problems": _problems(found.reading),
         }
         click.echo(json.dumps(answer, indent=2, ensure_ascii=False))
     else:
@@ -200,10 +202,15 @@ def _answers(found: "Proposed") -> dict[str, str]:
 
 def _show(found: "Proposed") -> None:
     click.echo(found.guess.text)
-    shown = counted(len(found.examples), "of them", "of them")
-    click.echo(f"{counted(found.rows, 'row')}, {counted(found.items, 'object')}; {shown} as understood:")
+    reading = found.reading
+    click.echo(
+        f"{counted(reading.rows, 'row')}, {counted(len(reading.items), 'object')}, {len(reading.rejected):,} refused, "
+        f"{_doubtful(reading):,} doubtful; {counted(len(found.examples), 'of them', 'of them')} as understood:"
+    )
     for line in found.examples:
         click.echo(f"  {line}")
+    listed("refused", [f"{r.message}; {r.remedy}" for r in reading.rejected], most=3)
+    listed("doubtful", _kinds(reading), most=5)
     listed("sure", list(found.guess.sure))
     listed("to look at", [*found.guess.doubts, *filter(None, [found.unknown])])
     listed(
@@ -214,7 +221,11 @@ def _show(found: "Proposed") -> None:
             for question in found.guess.questions
         ],
     )
-    listed("suspicion", [f"{s.message}; {s.remedy}" for s in found.suspicions])
+    listed("suspicion", [f"{s.message}; {s.remedy}" for s in reading.suspicions])
+
+
+def _doubtful(reading: "Reading") -> int:
+    return sum(1 for item in reading.items if item.problems)
 
 
 def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> None:
@@ -310,7 +321,7 @@ def _plain(done: "Imported") -> dict[str, Any]:
         "rows": reading.rows,
         "items": len(reading.items),
         "rejected": [asdict(r) for r in reading.rejected],
-        "doubtful": sum(1 for item in reading.items if item.problems),
+        "doubtful": _doubtful(reading),
         "display_said": done.display_said,
         "unknown": done.unknown,
         "suspicions": [asdict(s) for s in reading.suspicions],
@@ -344,10 +355,9 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     listed("renumbered", [f"{new} is likely what was {old}: {said}" for old, new in done.changes.renumbered])
     _changed(done.changes)
     click.echo(f"inventory: {counted(c.after, 'object')} ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
-    doubtful = sum(1 for item in reading.items if item.problems)
     chosen = f", {len(reading.choices):,} settled by choice" if reading.choices else ""
     click.echo(
-        f"read: {counted(reading.rows, 'row')}, {len(reading.rejected):,} refused, {doubtful:,} doubtful{chosen}; "
+        f"read: {counted(reading.rows, 'row')}, {len(reading.rejected):,} refused, {_doubtful(reading):,} doubtful{chosen}; "
         "the next report names each"
     )
     if not done.display_said:

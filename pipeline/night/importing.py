@@ -135,7 +135,7 @@ def presets() -> dict[str, Preset]:
 
 @dataclass(frozen=True)
 class Proposed:
-    """A guessed mapping, and what it makes of the source: rows, objects, and some of them in words.
+    """A guessed mapping, and what it makes of the source: what was read, and some of the objects in words.
 
     name  : for a file with the mapping, without its ending
     shown : the source in messages, without secrets
@@ -145,10 +145,8 @@ class Proposed:
     name: str
     shown: str
     guess: "Guess"
-    rows: int
-    items: int
+    reading: Reading
     examples: tuple[str, ...]
-    suspicions: tuple[Suspicion, ...]
     unknown: str = ""
 
 
@@ -198,8 +196,7 @@ def proposed(
         )
     else:
         shown, named = source, Path(source).stem
-    unknown = unknown_names(reading.items)
-    return Proposed(named, shown, found, reading.rows, len(reading.items), examples, reading.suspicions, unknown)
+    return Proposed(named, shown, found, reading, examples, unknown_names(reading.items))
 
 
 def _with_sizes(reading: Reading, mapping: "CollectionMapping") -> Reading:

@@ -136,7 +136,7 @@ DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["import", "--return-to", "7"], 5, "the inventory has no version 7"),
     (["import", "--versions"], 0, "3 objects"),
     (["import", "--presets"], 0, "carnegie"),
-    (["import", "export.csv", "--guess"], 0, "4 rows, 4 objects; 4 of them as understood"),
+    (["import", "export.csv", "--guess"], 0, "4 rows, 4 objects, 0 refused, 0 doubtful; 4 of them as understood"),
     (["import", "sqlite:///tms.sqlite", "--guess"], 0, "2 rows, 2 objects"),
     (["run"], 0, "3  objects on display"),
     (["run", "--gallery", "B"], 0, "2  objects on display"),

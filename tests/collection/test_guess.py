@@ -49,7 +49,7 @@ def url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
 def test_the_only_table_of_a_database_is_guessed_from(url: str) -> None:
     fill(url, "objects")
     found = proposed(url)
-    assert (found.rows, found.items, found.guess.mapping.source.table) == (2, 2, "objects")
+    assert (found.reading.rows, len(found.reading.items), found.guess.mapping.source.table) == (2, 2, "objects")
     assert {name: m.column for name, m in found.guess.mapping.columns.items()} == {
         "object_number": "ObjectNumber",
         "gallery": "Location",

@@ -32,7 +32,7 @@ def _rows(part: str) -> list[tuple[dict[str, str], Item]]:
     for name in sorted({mark["file"] for mark in marks}):
         path = FOLDER / part / name
         found = proposed(str(path))
-        assert not [one for one in found.suspicions if one.holds], name
+        assert not [one for one in found.reading.suspicions if one.holds], name
         items = {item.object_number: item for item in read_items(path, found.guess.mapping).items}
         out += [(mark, items[mark["number"]]) for mark in marks if mark["file"] == name]
     return out

@@ -26,7 +26,7 @@ def test_columns_that_texts_say_are_exchanged_are_taken_the_other_way_round(tmp_
     found = proposed(str(export(tmp_path, 40)))
     columns = found.guess.mapping.columns
     assert (columns["height_m"].column, columns["width_m"].column) == ("width", "height")
-    assert not found.suspicions
+    assert not found.reading.suspicions
     assert found.guess.doubts[0].startswith("height and width are exchanged in 40 of 40 rows")
     assert "--choose height_m=height --choose width_m=width takes them as they are called" in found.guess.doubts[0]
 
@@ -35,7 +35,7 @@ def test_columns_that_texts_say_are_exchanged_are_taken_the_other_way_round(tmp_
 def test_what_a_person_chose_is_not_exchanged(tmp_path: Path, choices: dict[str, str]) -> None:
     found = proposed(str(export(tmp_path, 40)), choices=choices)
     assert found.guess.mapping.columns["height_m"].column == "height"
-    assert [one.holds for one in found.suspicions] == ["sides"]
+    assert [one.holds for one in found.reading.suspicions] == ["sides"]
 
 
 def test_a_few_exchanged_sides_are_the_rows_own(tmp_path: Path) -> None:

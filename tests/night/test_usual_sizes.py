@@ -69,7 +69,7 @@ def _as(folder: Path, unit: str, factor: float) -> Path:
     [("cm", 0.0254, "m"), ("cm", 25.4, "mm"), ("mm", 2.54, "cm"), ("cm", 2.54, ""), ("m", 0.0254, "")],
 )
 def test_columns_whose_heads_name_the_wrong_unit(unit: str, factor: float, fits: str, tmp_path: Path) -> None:
-    said = [one.message for one in proposed(str(_as(tmp_path, unit, factor))).suspicions if one.holds == "units"]
+    said = [one.message for one in proposed(str(_as(tmp_path, unit, factor))).reading.suspicions if one.holds == "units"]
     assert [message.rpartition(" ")[2] for message in said] == [fits] * bool(fits)
 
 
