@@ -357,8 +357,8 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     click.echo(f"inventory: {counted(c.after, 'object')} ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
     chosen = f", {len(reading.choices):,} settled by choice" if reading.choices else ""
     click.echo(
-        f"read: {counted(reading.rows, 'row')}, {len(reading.rejected):,} refused, {_doubtful(reading):,} doubtful{chosen}; "
-        "the next report names each"
+        f"read: {counted(reading.rows, 'row')}, {len(reading.rejected):,} refused, {_doubtful(reading):,} doubtful"
+        f"{chosen}; the next report names each"
     )
     if not done.display_said:
         click.echo(unsaid(sum(item.on_display for item in reading.items)))

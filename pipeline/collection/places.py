@@ -5,7 +5,7 @@ from functools import cache, lru_cache
 from typing import NamedTuple
 
 from pipeline.records import Furniture
-from pipeline.tables.held_rows import CASES, told_by, words_for
+from pipeline.tables.held_rows import CASES, hangs_above, told_by, words_for
 from pipeline.tables.rows import any_of
 
 _SEPARATOR = re.compile(r"\s*[,;/>|]\s*|:\s+|\s+[-–—]\s+")
@@ -19,10 +19,15 @@ _SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 
 _ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
-    r"|salon|sala|salone|galleria|galería|galeria|zaal|\w*sal|terem|αίθουσα|salonu|зал)(?!\w)",
+    r"|salon|sala|salone|galleria|galería|galeria|zaal|\w*sal|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
+    r"|ruang|phòng|القاعة|قاعة|تالار|אולם|\w*展示室[a-z\d]{0,3})(?!\w)",
     re.IGNORECASE,
 )
 """A room that is named without a number or a mark behind it: "Fossil room Case 2"."""
+_NUMBERED_ROOM = re.compile(
+    rf"(.*?(?:{_ROOM.pattern}\s?(?:no\.?|nr\.?|#|№)?\s?{_SIGN}|展示室))\s+(\S.*)", re.IGNORECASE
+)
+"""One with its number and more words behind: "Gallery 3 on plinth"."""
 
 
 class NamedPlace(NamedTuple):
@@ -68,9 +73,17 @@ def parted(text: str) -> NamedPlace:
     held = next((at for at, (start, end) in enumerate(spans) if at and _tells(text[start:end])), 0)
     if held:
         return NamedPlace(text[: spans[held - 1][1]], displayed=text[spans[held][0] :])
+    behind = _NUMBERED_ROOM.fullmatch(text)
+    if behind and _tells(behind[2]):
+        return (
+            NamedPlace(behind[1], behind[2]) if whole.match(behind[2]) else NamedPlace(behind[1], displayed=behind[2])
+        )
     found = inside.search(text)
     room_alone = text[: found.start()].rstrip() if found else ""
-    return NamedPlace(room_alone, text[len(room_alone) :].strip()) if room_alone else NamedPlace(text)
+    if room_alone:
+        return NamedPlace(room_alone, text[len(room_alone) :].strip())
+    # "Suspended above the stairs": a place in the air is no room's name alone.
+    return NamedPlace(text, displayed=text if hangs_above(text) else "")
 
 
 def _tells(piece: str) -> bool:

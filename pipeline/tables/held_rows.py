@@ -11,7 +11,7 @@ from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support
 from pipeline.tables import table
 from pipeline.tables.rows import BUT_NOT, SOME_WORDS, Entries, TableRow, Text, checked
 
-CASES = ("case", "cases", "Schrank", "kast", "Vit", "Vitr")
+CASES = ("case", "cases", "Schrank", "kast", "Vit", "Vitr", "ケース")
 """Words that name a case where a number follows them, or in a field for cases: else they may be of furniture."""
 
 _JOINED = re.compile("[\u2e80-\u30ff\u3400-\u9fff\uac00-\ud7af]")

@@ -126,7 +126,7 @@ def _read(path: Path) -> tuple[dict[str, Item], bool]:
     except CollectionError as error:
         print(error, file=sys.stderr)
         return {}, True
-    held = [one.message for one in found.suspicions if one.holds]
+    held = [one.message for one in found.reading.suspicions if one.holds]
     if held:
         print(path.name, *held, sep="\n", file=sys.stderr)
         return {}, True

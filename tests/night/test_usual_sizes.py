@@ -69,7 +69,8 @@ def _as(folder: Path, unit: str, factor: float) -> Path:
     [("cm", 0.0254, "m"), ("cm", 25.4, "mm"), ("mm", 2.54, "cm"), ("cm", 2.54, ""), ("m", 0.0254, "")],
 )
 def test_columns_whose_heads_name_the_wrong_unit(unit: str, factor: float, fits: str, tmp_path: Path) -> None:
-    said = [one.message for one in proposed(str(_as(tmp_path, unit, factor))).reading.suspicions if one.holds == "units"]
+    reading = proposed(str(_as(tmp_path, unit, factor))).reading
+    said = [one.message for one in reading.suspicions if one.holds == "units"]
     assert [message.rpartition(" ")[2] for message in said] == [fits] * bool(fits)
 
 

@@ -19,6 +19,9 @@ _IN_PLAN = frozenset({"width", "depth", "diameter"})
 _NUMBERING = frozenset("abcdefg")
 """Letters that number components."""
 _LETTERS = re.compile(r"[^\W\d_]+")
+_MEASURED = re.compile(r"\b[^\W\d_]{1,10} \d+(?= )")
+"""Within the name of a part: a label that nobody knows with its number, "qz 65 xv 130 wy" of qz. 65, xv. 130, wy. 6 cm.
+"""
 _SHARE_OF_HEIGHT = 0.05
 """Height of a base over that of the object from which it matters whether the one is in the other."""
 _WITHIN = 0.97
@@ -176,6 +179,8 @@ def _is_foreign(name: str, about: str) -> bool:
     """Whether no word of the name of a part is known, so that it may be the word of another language for a side."""
     own = {_stem(word) for word in about.casefold().split()}
     words = _LETTERS.findall(name.casefold())
+    if len(_MEASURED.findall(name)) > 1:
+        return True
     return (
         bool(words)
         and not is_detail(name)

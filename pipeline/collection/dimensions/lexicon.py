@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -122,6 +123,38 @@ def meanings() -> dict[str, tuple[str, str]]:
     return {
         word.translate(ALIKE): (row.kind, row.meaning) for row in rows if row.kind != _COMPOUND for word in row.words
     }
+
+
+_WHOLE = re.compile(r"[^\W\d_]+")
+"""What the reader of texts takes for one word."""
+
+
+@cache
+def spelled() -> tuple[re.Pattern[str], Mapping[str, str]]:
+    """Return words that have marks or blanks in them (ס"מ, đường kính, สูง), and a plain word as long for each.
+
+    Returns
+    -------
+    pattern : re.Pattern
+        Finds them, behind letters too; a text in ASCII has none.
+    plain : mapping of str to str
+        By the word in small letters, another of the same meaning, filled up with blanks.
+    """
+    said: dict[tuple[str, str], list[str]] = {}
+    for word, (kind, meaning) in meanings().items():
+        if kind in ("dimension", "part", "qualifier"):
+            said.setdefault((kind, meaning), []).append(word)
+    for word, unit in unit_words().items():
+        said.setdefault(("unit", unit.name), []).append(word)
+    plain = {}
+    for words in said.values():
+        whole = [word for word in words if len(word) > 1 and word.isascii() and word.isalpha()]
+        for word in words:
+            fits = next((one for one in whole if len(one) <= len(word)), None)
+            if fits and not word.isascii() and not _WHOLE.fullmatch(word) and any(map(str.isalpha, word)):
+                plain[word] = fits.ljust(len(word))
+    # No assertion before the words: the pattern is searched by their first letters.
+    return re.compile("|".join(map(re.escape, sorted(plain, key=len, reverse=True))), re.IGNORECASE), plain
 
 
 _SHORTENED = 3

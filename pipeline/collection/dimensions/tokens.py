@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -13,6 +14,7 @@ from pipeline.collection.dimensions.lexicon import (
     label_words,
     meanings,
     shortened,
+    spelled,
     unit_words,
 )
 
@@ -49,6 +51,9 @@ _TOKEN = re.compile(
 _ALIKE = {code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)} | {0x3000: 0x20, 0xFF0E: 0x2E}
 _ALIKE |= ALIKE | {ord("∅"): ord("Ø")}
 _ALIKE[0xB1] = _ALIKE[0x2248] = 0x20
+# The digits and marks of Arabic and Persian, and the digits of Thai.
+_ALIKE |= {zero + n: 0x30 + n for zero in (0x660, 0x6F0, 0xE50) for n in range(10)}
+_ALIKE |= {0x66B: ord("."), 0x66C: ord(","), 0x60C: ord(","), 0x61B: ord(";")}
 _EXTREMES = "max|maximum|maxi|maximal|min|minimum|overall|greatest|total|approx|ca"
 # Each as long as what it replaces, so that the places of all characters stay.
 _SAME_LENGTH = (
@@ -219,6 +224,9 @@ def tokens_of(text: str, decimal: str) -> list[Token]:
 def _plain(text: str) -> str:
     """Return a text as long as before, with one character for each way to write it, and in words what is in marks."""
     text = text.translate(_ALIKE)
+    if not text.isascii():
+        marked, plain = spelled()
+        text = marked.sub(lambda found: _respelled(found, plain), text)
     for pattern, words in _SAME_LENGTH:
         text = pattern.sub(words, text)
     if ":" in text:
@@ -230,6 +238,12 @@ def _plain(text: str) -> str:
         text = _LISTED.sub(lambda found: " " * len(found[0]), text)
     text = _THOUSANDS.sub(_joined, text)
     return _SLASHED.sub(_parted, text) if "/" in text else text
+
+
+def _respelled(found: re.Match[str], plain: Mapping[str, str]) -> str:
+    """Return the plain word for one with marks in it, where it is no end of a longer one."""
+    word: str = found[0]
+    return word if found.string[max(found.start() - 1, 0) : found.start()].isalpha() else plain.get(word.lower(), word)
 
 
 def _unscaled(sizes: re.Match[str]) -> str:
