@@ -15,6 +15,7 @@ from pipeline.collection.display_words import flag_of
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.mapping import WRITTEN, ColumnMap
 from pipeline.collection.measured_cell import of_cell
+from pipeline.collection.money import amount
 from pipeline.collection.record import CHOICES, plausible, units_of
 from pipeline.collection.sources.rows import TypedNumber, as_text
 from pipeline.errors import InputError
@@ -88,6 +89,8 @@ class Cells:
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
+        if name == "value" and (money := amount(text)) is not None:
+            text = money[0].replace(".", self.decimal)
         noted = _NOTED.fullmatch(text)
         if noted is not None:
             return self._with_note(name, column, noted["note"], [noted["number"], *texts[1:]])

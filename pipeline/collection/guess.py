@@ -187,10 +187,23 @@ def _words_of_display(found: dict[str, Column], told: GuessNotes) -> None:
         told.doubts.append(f"column {mounts.name!r} is taken to say in words how objects are displayed or held")
 
 
+def _places_of_cases(found: dict[str, Column], told: GuessNotes) -> None:
+    """Take a column of cases for the places too, where no column is of places and it names more than cases' signs."""
+    cases = found.get("case")
+    if cases is None or {"gallery", "case"} & {*found.keys() - {"case"}, *told.choices}:
+        return
+    if sum(parted(text).room != text for text in cases.distinct) >= 0.5 * len(cases.distinct) > 0:
+        found["gallery"] = found.pop("case")
+        told.doubts.append(
+            f"column {cases.name!r} is taken to name rooms and cases; --choose case=COLUMN leaves it cases"
+        )
+
+
 def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told: GuessNotes) -> Guess:
     able = candidates(columns)
     _add_misspelt(columns, able, told)
     found = _chosen(name, columns, able, told)
+    _places_of_cases(found, told)
     headed = place_by_heading(found, columns) if "gallery" not in told.choices else ""
     told.doubts += [headed] * bool(headed)
     named_twice = name_and_title(able, found, told.choices)

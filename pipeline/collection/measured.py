@@ -69,6 +69,7 @@ _WORTH_A_WORD = {
     "contradiction": "measure it again, and correct the text in the museum's database",
     "conversion": "measure it again, and correct the text in the museum's database",
     "missing_unit": 'write the unit into the text, or say it in the mapping, [dimensions] unit = "..."',
+    "shared_unit": "write the unit behind each number, or behind the last one",
     "ambiguous": say.NAME_NUMBERS(),
     "label": _LANGUAGE,
     "unused": say.WHOSE_IS_IT(),

@@ -54,6 +54,7 @@ def test_the_only_table_of_a_database_is_guessed_from(url: str) -> None:
         "object_number": "ObjectNumber",
         "gallery": "Location",
         "title": "Title",
+        "object_name": "Title",
         "height_m": "Height (cm)",
     }
     # What it proposes reads the database as it stands.

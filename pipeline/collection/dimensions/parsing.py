@@ -42,6 +42,8 @@ _DASHED = re.compile(r"(?<![^\W_])([^\W\d_]{1,2})-(?=\d)")
 _SENTENCE_END = re.compile(r"(?<=\d)\.(?=\s+[^\W\d_])")
 """A full stop behind a number: what a sentence ends with is no side of what the next one names, as in 1850. H 90."""
 _DASHED_SIDES = frozenset("hwldbt")
+_APART = 10
+"""How many times as long as another a side hardly is of which one unit alone is written (judgement)."""
 
 
 def parse(
@@ -222,7 +224,17 @@ def _mark_of(text: str) -> str:
 
 
 def _share_units(group: Group, notes: list[DimensionNote]) -> None:
-    """Carry a unit back in 'H. 10, W. 5, D. 3 cm'."""
+    """Carry a unit back in 'H. 10, W. 5, D. 3 cm', and on in 'H. 10 cm, W. 5, D. 3'."""
+    first, rest = group.quantities[:1], group.quantities[1:]
+    if first and first[0].unit is not None and first[0].kind == "length" and first[0].dimension:
+        on = [q for q in rest if q.unit is None and q.dimension not in ("", "weight")]
+        # 1.2 m high, 45 wide: of another unit, that is not told.
+        alike = all(q.num * first[0].den < _APART * first[0].num * q.den for q in on)
+        if on and alike and all(q.unit is None or q.kind != "length" for q in rest):
+            for q in on:
+                q.unit = first[0].unit
+                message = f"the unit is that of the first number, {first[0].unit.name}"
+                notes.append(DimensionNote("shared_unit", message, q.start, q.end))
     unit = None
     for q in reversed(group.quantities):
         if q.unit is not None and q.unit.kind == "length":

@@ -63,8 +63,9 @@ class DimensionNote:
     ----------
     kind : str
         contradiction (two readings differ by more than 3 mm and 3 %), conversion (a reading that pairs with none),
-        order (the order was assumed), unit (a unit was assumed or inferred), missing_unit, ambiguous, left_out (a
-        duration, a date, a scale), variable, remainder (characters not understood), truncated.
+        order (the order was assumed), unit (a unit was assumed or inferred), shared_unit (it is that of a number
+        before), missing_unit, ambiguous, left_out (a duration, a date, a scale), variable, remainder (characters not
+        understood), truncated.
     message : str
         The same in words.
     start, end : int

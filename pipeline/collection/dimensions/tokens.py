@@ -81,6 +81,8 @@ _SAME_LENGTH = (
     (re.compile(r"[〔【]"), " "),
     (re.compile(r"[〕】]"), ":"),
     (re.compile(r"(?i)(?<=\d)( ?)st(?=\.? ?\d+(?:\.\d+)? ?lbs?\b)"), r"\1ſt"),  # 12 st 4 lb
+    # U: 218 G: 98 Y: 112: what a colon stands behind is a label, though it is a unit too.
+    (re.compile(r"(?i)(?<=\d) (?=[gmt]\s?[:=]\s?\d)"), ";"),
     # A garment hangs as high as it is long: Length at CB: 52 in.; Length: 145cm nape to hem
     (re.compile(r"(?i)\blength(?= (?:at |of )?(?:c\.?[bf]\b|cent(?:er|re) (?:back|front)))"), "height"),
     (

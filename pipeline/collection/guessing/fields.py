@@ -14,6 +14,7 @@ from pipeline.collection.guessing.columns import NUMBER, Column
 from pipeline.collection.guessing.names import TEXTS, bare, named, unit_in
 from pipeline.collection.guessing.units import FEET, usual_unit
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
+from pipeline.collection.money import no_money
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.collection.sources.rows import TypedNumber
@@ -280,10 +281,13 @@ class Fields:
             return self._flag(name, column, entry)
         elif kind == "choice":
             return self._choice(name, column, entry)
+        why = ""
+        if name == "value":
+            why = no_money(column.filled)
         elif kind in ("number", "integer") and column.filled and not column.numeric:
-            self.doubts.append(
-                f"column {column.name!r} is left out: it may be {name}, but most of its cells are no numbers"
-            )
+            why = "most of its cells are no numbers"
+        if why:
+            self.doubts.append(f"column {column.name!r} is left out: it may be {name}, but {why}")
             return None
         return entry
 

@@ -36,6 +36,8 @@ _JOINED = re.compile(r"(\w{4,}?)(mm|cm|in|ft|kg|lb|lbs|oz)", re.IGNORECASE)
 _NUMBER_WORDS = frozenset(
     ["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar", "αρ", "αριθμοσ", "numarasi"]
 )
+_NUMBER = "no"
+"""What stands for each of them where names are compared."""
 _STOP = frozenset(
     {
         *("of", "the", "von", "van", "der", "die", "den", "das", "de", "del", "della", "dello", "di", "du", "des"),
@@ -219,7 +221,7 @@ def plain(name: str) -> str:
     # In capitals nobody can tell the two i of Turkish apart.
     bare = shortened_signs(normalize("NFC", bare))
     words = _OTHER.sub(" ", bare.casefold().replace("ı", "i")).split()
-    kept = ["no" if word in _NUMBER_WORDS else word for word in words if word not in _STOP]
+    kept = [_NUMBER if word in _NUMBER_WORDS else word for word in words if word not in _STOP]
     return " ".join(kept or words)
 
 
@@ -295,6 +297,8 @@ def named(name: str) -> ColumnMeaning | None:
     denoting = _says(path[-1]) == "title" or plain(path[-1]) in _DENOTING
     if len(path) > 1 and denoting and _says(path[-2]) == "gallery":
         return _names()[plain(path[-2])]  # what a place is called, and no thing: "Raum.bezeichnung"
+    if plain(name) != _NUMBER or len(_OTHER.sub("", name)) == 1:
+        forms = [form for form in forms if form != _NUMBER]  # the N of "Y/N"
     for form in forms:
         found = _names().get(form)
         # What stands below a description is none: "Description.Material.Keyword".

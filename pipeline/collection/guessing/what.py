@@ -72,7 +72,8 @@ def named_by(
 
     That is a column called "name" beside a description; the title, where no artist, material or class is told and most
     of what is measured has more sides than a picture, or one alone: a list of things gives their names for titles.
-    Where nothing is measured, most titles must be short names of things.
+    Where nothing is measured, or height and width alone in columns of their own, most titles must be short names of
+    things.
     Where there is no title either, it is a description, the first sentence of which says what a thing is.
 
     Parameters
@@ -111,7 +112,7 @@ def _bodily(texts: Sequence[Column], filled: set[str], title: Column) -> bool:
     sides = [{part.dimension for part in parse(plain_text(text)).parts if part.unit} for text in some]
     measured = [one for one in sides if one]
     flat = sum(len(one) == _FACE and one <= {"height", "width", "length", "unlabelled"} for one in measured)
-    if not measured and not filled.intersection(("height_m", "width_m", "length_m")):
+    if not measured:
         return _names_things(title.filled[:_SOME])
     return bool(measured) and flat < 0.5 * len(measured)
 
