@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 _MARK = r"(?P<{}>(?:[A-Z]{{1,3}}\s?)?[$€£¥₺₽₩₪]|[A-Z][A-Za-z]{{1,3}}\.?|円|元|원|Kč|zł)?"
 _AMOUNT = re.compile(
-    rf"{_MARK.format('before')}\s*(?P<whole>\d{{1,3}}(?:(?P<by>[.,'’ \u00a0\u202f])\d{{3}}(?:(?P=by)\d{{3}}){{0,4}})?|\d{{1,15}})"
+    rf"{_MARK.format('before')}\s*"
+    rf"(?P<whole>\d{{1,3}}(?:(?P<by>[.,'’ \u00a0\u202f])\d{{3}}(?:(?P=by)\d{{3}}){{0,4}})?|\d{{1,15}})"
     rf"(?:(?!(?P=by))[.,](?P<part>\d{{1,2}}|[-–]{{1,2}}))?\s*{_MARK.format('behind')}"
 )
 _GROUPS = re.compile(r"\D")

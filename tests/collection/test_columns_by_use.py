@@ -8,16 +8,15 @@ from pathlib import Path
 import pytest
 
 from pipeline.collection.dimensions import choose, parse
-from pipeline.collection.guess import Guess, guess
+from pipeline.collection.guess import guess
 from pipeline.collection.money import amount, no_money
 from pipeline.collection.reading import read_items
 from pipeline.records import Item
 
 
-def _read(path: Path, text: str) -> tuple[Guess, tuple[Item, ...]]:
+def _read(path: Path, text: str) -> tuple[Item, ...]:
     path.write_text(text, encoding="utf-8")
-    found = guess(path)
-    return found, tuple(read_items(path, found.mapping).items)
+    return tuple(read_items(path, guess(path).mapping).items)
 
 
 def test_a_display_type_is_no_type_of_thing(tmp_path: Path) -> None:
@@ -27,7 +26,7 @@ def test_a_display_type_is_no_type_of_thing(tmp_path: Path) -> None:
         '1990/3,"Model, ship",TSS Maheno,Maritime Hall,Table case,"1200 mm long, 280 wide, 560 high","$8,500.00"\n'
         '1888.1,Painting,Milford Sound,Gallery 2,"Hung, 2 x D rings",1030 x 1540 mm,"$250,000.00"\n'
     )
-    model, painting = _read(tmp_path / "list.csv", text)[1]
+    model, painting = _read(tmp_path / "list.csv", text)
     assert (model.object_name, model.displayed, painting.displayed) == (
         "Model, ship",
         "Table case",
@@ -45,7 +44,7 @@ def test_heads_of_how_things_are_held(tmp_path: Path, head: str) -> None:
     text = (
         f"Inventory No,Object,Location,Height cm,{head}\n7,statue,Hall 1,165,bolted to plinth\n8,vase,Hall 1,30,wax\n"
     )
-    found, items = _read(tmp_path / "list.csv", text)
+    items = _read(tmp_path / "list.csv", text)
     assert [item.displayed for item in items] == ["bolted to plinth", "wax"]
 
 
@@ -53,10 +52,10 @@ def test_a_column_of_rooms_and_cases_is_of_places_too(tmp_path: Path) -> None:
     """Cases alone stay cases, for then no column says where they are."""
     text = "Env. No;Eser Adı;{};Ölçüler\n1;pithos;Salon 1 / Vitrin 5;Y: 45 cm\n2;sikke;Salon 3 / Vitrin 11;Y: 2 cm\n"
     for head in ("Salon / Vitrin", "Vitrin"):
-        found, items = _read(tmp_path / f"{head[:3]}.csv", text.format(head))
+        items = _read(tmp_path / f"{head[:3]}.csv", text.format(head))
         assert [(item.gallery, item.case) for item in items] == [("Salon 1", "Vitrin 5"), ("Salon 3", "Vitrin 11")]
     alone = text.replace("Salon 1 / Vitrin 5", "5").replace("Salon 3 / Vitrin 11", "11").format("Vitrin")
-    assert [item.case for item in _read(tmp_path / "alone.csv", alone)[1]] == ["5", "11"]
+    assert [item.case for item in _read(tmp_path / "alone.csv", alone)] == ["5", "11"]
 
 
 def test_where_a_thing_is_now_may_stand_within_its_place(tmp_path: Path) -> None:
@@ -64,7 +63,7 @@ def test_where_a_thing_is_now_may_stand_within_its_place(tmp_path: Path) -> None
         {"identifier": "A-1", "label": "Globe, terrestrial", "height_cm": 125, "place": {"current": "Library, Bay 4"}},
         {"identifier": "A-2", "label": "Orrery", "height_cm": 54, "place": {"current": "Library, showcase 2"}},
     ]
-    _, items = _read(tmp_path / "list.json", json.dumps({"results": rows}))
+    items = _read(tmp_path / "list.json", json.dumps({"results": rows}))
     assert [(item.object_name, item.gallery) for item in items] == [
         ("Globe, terrestrial", "Library, Bay 4"),
         ("Orrery", "Library"),
@@ -73,7 +72,7 @@ def test_where_a_thing_is_now_may_stand_within_its_place(tmp_path: Path) -> None
 
 def test_a_number_is_preferred_to_the_id_of_a_database(tmp_path: Path) -> None:
     text = "ID,Number,Object,Room,Height mm\n77,H.77,jug,R2,212\n78,H.78,dresser,R2,1980\n"
-    assert [item.object_number for item in _read(tmp_path / "list.csv", text)[1]] == ["H.77", "H.78"]
+    assert [item.object_number for item in _read(tmp_path / "list.csv", text)] == ["H.77", "H.78"]
 
 
 @pytest.mark.parametrize(
