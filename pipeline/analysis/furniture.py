@@ -52,6 +52,25 @@ FLOOR_BEARS = 500.0
 
 WHAT_HANGS = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what hangs from above"}
 """What is said of furniture to be usual for, where it is so for whatever hangs."""
+IN_THE_OPEN = "what stands in the open"
+"""The same of whatever stands in a garden, a court, on a terrace."""
+_OPEN = any_of([
+    *("garden", "gardens", "courtyard", "patio", "terrace", "grounds", "outdoors", "outside", "forecourt", "car park"),
+    *("lawn", "sculpture park", "foreshore", "Garten", "Innenhof", "Hof", "Vorplatz", "Außengelände", "im Freien"),
+    *("jardin", "jardins", "cour", "parc", "parvis", "extérieur", "giardino", "cortile", "terrazza", "parco"),
+    *("jardín", "terraza", "parque", "exterior", "jardim", "pátio", "terraço", "tuin", "binnenplaats", "esterno"),
+    *("grădină", "curte", "bahçe", "bahçesi", "avlu", "avlusu", "αυλή", "κήπος", "dvorište", "vrt", "perivoj", "двор"),
+    *("двір", "подвір'я", "сад", "градина", "двориште", "ogród", "dziedziniec", "zahrada", "nádvoří", "kert", "udvar"),
+    *("gårdsplads", "hage", "trädgård", "piha", "中庭", "庭園", "前庭", "屋外", "庭院", "室外", "마당"),
+    *("정원", "야외", "حديقة", "فناء", "حیاط", "חצר", "גן", "halaman", "taman", "sân", "vườn"),
+])  # fmt: skip
+"""Words of places under the sky; with one of a room, as in "Garden Room", they name that (judgement)."""
+_ROOFED = re.compile(
+    r"room|galler|hall|wing|salle|sala\b|saal|raum|zaal|terem|αίθουσα|salon|зал|室|館|ward|cabinet|restaurant|caf[eé]|shop",
+    re.IGNORECASE,
+)
+
+_CASES = frozenset({Furniture.SHOWCASE, Furniture.SHELF})
 
 _NOT_FASTENED = re.compile(r"; (?:taken as )?not fastened, .*$", re.DOTALL)
 """The end of a note of furniture that is not fastened, with who says so."""
@@ -180,11 +199,20 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
         kind = next(named, Furniture.SHOWCASE)
         return FurnitureGuess(kind, Origin.DERIVED, f"for its record names the case or plinth {case!r}")
     row = _usual(object_class, support.value if hangs else STANDING, _largest(item, hangs=hangs))
+    if row.furniture in _CASES and not hangs and in_the_open(item.gallery):
+        words = f"assumed for: {IN_THE_OPEN}, usual_furniture.csv; not recorded"
+        return FurnitureGuess(Furniture.FLOOR, Origin.ASSUMED, words, "judgement: no case stands under the sky")
     about = "what stands" if row.object_class == ANY else object_class.replace("_", " ")
     from_ = f" from {row.taller_than:g} m on" if row.taller_than else ""
     about = WHAT_HANGS.get(support, about)
     words = f"assumed for: {about}{from_}, usual_furniture.csv; not recorded"
     return FurnitureGuess(row.furniture, Origin.ASSUMED, words, f"usual_furniture.csv ({row.source})")
+
+
+@lru_cache(maxsize=4096)
+def in_the_open(place: str) -> bool:
+    """Say whether the name of a place is that of one under the sky: a garden, a court, a terrace."""
+    return _OPEN.search(place) is not None and _ROOFED.search(place) is None
 
 
 def _largest(item: Item, *, hangs: bool) -> float:

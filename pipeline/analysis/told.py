@@ -6,7 +6,7 @@ from functools import cache
 from textwrap import shorten
 
 from pipeline.quantities import LENGTHS
-from pipeline.records import Furniture, Item, Mount, Support
+from pipeline.records import Furniture, Hanging, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
 from pipeline.tables.held_rows import CASES, hangs_above, told_by, words_for
@@ -29,6 +29,10 @@ _HUNG_BY = re.compile(
 )
 """How long a line is that something hangs by: "by a chain of 2 m", "on 3 m cables"."""
 
+_WALL = re.compile(
+    r"wall|wand\b|wänd|\bmur|paret|pared|perete|τοίχ|壁|벽|墙|\bzid|стен|стін|ścian|stěn|\bfal|duvar|vegg|vägg|væg|sein",
+    re.IGNORECASE,
+)
 HANGS_FROM = 0.5
 """Largest size [m] from which a title is believed that says that a thing hangs from above: judgement."""
 
@@ -123,7 +127,8 @@ def as_told(item: Item, row: ObjectClass) -> Item:
     """Return a record with the support that the rest of it tells, where it does not name one.
 
     What has a footing that was measured stands on it, whatever things of its class usually do, and so does what usually
-    hangs where its record names furniture to stand on.  What has an isolator stands on that.
+    hangs where its record names furniture to stand on.  What has an isolator stands on that.  Chains and wires alone
+    hold a chandelier from above, and a picture on a wall.
 
     Parameters
     ----------
@@ -132,6 +137,8 @@ def as_told(item: Item, row: ObjectClass) -> Item:
     row : ObjectClass
         Its class.
     """
+    if row.support is Support.SUSPENDED and _by_chain_alone(item):
+        return replace(item, support=Support.SUSPENDED, hanging=None)
     if item.support is not None or item.hanging is not None:
         return item
     if item.isolator.strip():
@@ -142,6 +149,12 @@ def as_told(item: Item, row: ObjectClass) -> Item:
     if not stands or (usual and not too_slender(item)):
         return item
     return replace(item, support=Support.FREESTANDING)
+
+
+def _by_chain_alone(item: Item) -> bool:
+    """Whether the words for its display tell that a thing hangs by chains or wires, and of no wall."""
+    words = item.displayed
+    return told_by(words).hanging is Hanging.WIRE is item.hanging and not _WALL.search(f"{item.gallery} {words}")
 
 
 def in_case(item: Item, row: ObjectClass) -> bool:

@@ -69,6 +69,21 @@ def test_a_title_that_says_that_a_large_thing_hangs_is_believed() -> None:
     assert classify(pendant).support is not Support.SUSPENDED
 
 
+@pytest.mark.parametrize(
+    ("name", "words", "support"),
+    [
+        ("chandelier", "appeso a catena", Support.SUSPENDED),
+        ("chandelier", "by chains from a bracket on the wall", Support.HUNG),
+        ("painting", "by chains", Support.HUNG),
+    ],
+)
+def test_chains_alone_hold_a_chandelier_from_above(name: str, words: str, support: Support) -> None:
+    item = Item("5", "Staircase", object_name=name, height_m=1.8, width_m=1.3, displayed=words)
+    scene = classify(item)
+    assert scene.support is support
+    assert (scene.models == ("swing_3d",)) is (support is Support.SUSPENDED)
+
+
 def test_a_plate_on_a_stand_leans_and_one_in_a_case_lies() -> None:
     """It comes away from what it leans on where the push exceeds g times the tangent of its lean, 8 to 25 degrees."""
     leaning, lying = classify(with_words(PLATE, "on plate stand")), classify(with_words(PLATE, "in showcase"))

@@ -133,6 +133,22 @@ def test_what_is_as_large_as_a_person_stands_on_no_pedestal(
     assert furniture_kind(item) is kind
 
 
+@pytest.mark.parametrize(
+    ("place", "kind"),
+    [
+        ("Bahçe", Furniture.FLOOR),
+        ("Sculpture garden, north", Furniture.FLOOR),
+        ("中庭", Furniture.FLOOR),
+        ("Garden Room", Furniture.SHOWCASE),  # of its name a room
+        ("Gallery 3 (Courtyard side)", Furniture.SHOWCASE),
+    ],
+)
+def test_no_case_stands_under_the_sky(place: str, kind: Furniture) -> None:
+    jar = Item("1", place, object_name="jar", medium="terracotta", height_m=0.4, width_m=0.3, depth_m=0.3)
+    assert furniture_kind(jar) is kind
+    assert furniture_kind(replace(jar, case="Case 3")) is Furniture.SHOWCASE
+
+
 def test_only_rows_that_say_so_leave_an_object_on_bare_ground() -> None:
     """A cabinet stands on the floor because a row of the table says it, and the scene names the table."""
     bare = [row for row in usual_furniture() if row.furniture is Furniture.FLOOR and not row.taller_than]
