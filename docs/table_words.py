@@ -51,6 +51,7 @@ TABLE_WORDS = {
     "furniture it is met by chance.",
     "unknown_names": "How often things whose name rules.csv does not know are of each class.",
     "homographs": "Words that name other things in another language, and how far their class by rules.csv is believed.",
+    "usual_materials": "What things are mostly made of, for their mass where no material is recorded.",
     "usual_sizes": "How large things of a class are [m], by which an import tells a unit that cannot be.",
     "survey": "The questions of the survey's sheet.",
     "validation": "What `kouros validate` assumes of a body for which nothing is fitted.",

@@ -15,6 +15,7 @@ from pipeline.tables.assumed import UNKNOWN
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.body_rows import SCREEN, BodyRow
 from pipeline.tables.fill_rows import fill_of
+from pipeline.tables.usual_material_rows import usual_material
 
 _FRAMED = (5.0, 15.0, 40.0)
 """Mass of a square metre of a framed work [kg/m2], by judgement: low, best, high."""
@@ -95,6 +96,11 @@ def mass_of(
         return None
     density = material.density_range
     phrase = say.MASS_OF_SHELL if own else say.MASS_OF_CLASS if row.aside else say.MASS
+    words = f"{item.object_name} {item.title}"
+    usual = usual_material(row.name, words, item.height_m) if material.name == UNKNOWN and item.height_m else None
+    if usual is not None and not (row.own or shaped):
+        material, density, phrase = usual.of, usual.density, say.MASS_OF_USUAL
+        fill = _shell_fill(item, row, material) or fill
     note = phrase(material=material.told, density=density.value, fill=fill.value, aside=row.aside.strip(" ()"))
     low, high = box * fill.low * density.low, box * fill.high * density.high
     return Estimate.assumed(box * fill.value * density.value, low, high, "kg", note, density.source)

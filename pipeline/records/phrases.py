@@ -81,6 +81,9 @@ MASS_OF_CLASS = Clause("mass: {material} of {density:kg/m3} filling {fill:-} of 
 MASS_OF_SHELL = Clause(
     "mass: {material} of {density:kg/m3} filling {fill:-} of its outline, assumed for such a thing of that material"
 )
+MASS_OF_USUAL = Clause(
+    "mass: {material} of {density:kg/m3}, as such things mostly are, filling {fill:-} of its outline, assumed"
+)
 STRESS = Clause("allowable stress: {material}, {stress:MPa}, condition factor {factor:-}")
 STRESS_UNSEEN = Clause("allowable stress: {material}, {stress:MPa}, condition factor 1 (not recorded)")
 CONCENTRATION = Clause("stress where its held base ends: {times:-} times the nominal, assumed for what does not yield")

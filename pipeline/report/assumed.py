@@ -21,7 +21,7 @@ TABLES = tuple(
     for name in (
         "bending", "classes", "contacts", "damping", "efforts", "fills", "fixings", "friction", "furniture",
         "hangings", "isolators", "limits", "materials", "measures", "mounts", "proportions", "slender", "stakes",
-        "usual_furniture", "usual_hangings",
+        "usual_furniture", "usual_hangings", "usual_materials",
     )
 )  # fmt: skip
 """Files that sources name; a catalogue says what each is about."""

@@ -13,6 +13,7 @@ from pipeline.records import Item
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed, assumed_with
 from pipeline.tables.fill_rows import fills
+from pipeline.tables.usual_material_rows import usual_material
 
 
 def test_every_class_and_material_of_the_table_is_one() -> None:
@@ -95,3 +96,29 @@ def test_a_slab_on_a_wall_weighs_what_its_material_does(
     # Without its depth or its material it is as what hangs on walls.
     for bare in (replace(relief, medium=""), Item("2", "G", object_name="painting", height_m=height, width_m=width)):
         assert classify(bare).parameters["mass"].value == pytest.approx(15.0 * height * width)
+
+
+@pytest.mark.parametrize(
+    ("name", "title", "material", "low", "high"),
+    [
+        ("wardrobe", "", "wood", 350.0, 1500.0),
+        ("grandfather clock", "Longcase", "wood", 350.0, 2000.0),
+    ],
+)
+def test_what_nobody_says_is_of_what_such_things_mostly_are(
+    name: str, title: str, material: str, low: float, high: float
+) -> None:
+    """Furniture without a material weighed three times as much as of wood: 600 kg for a wardrobe of two doors."""
+    item = Item("1", "G", object_name=name, title=title, height_m=2.1, width_m=1.3, depth_m=0.55)
+    bare, said = (classify(one).parameters["mass"] for one in (item, replace(item, medium=material)))
+    best = assumed().materials[material].density
+    assert bare.value == pytest.approx(said.value, rel=1e-12)
+    assert (bare.low / said.low, bare.high / said.high) == pytest.approx(
+        (low / assumed().materials[material].density_low, high / assumed().materials[material].density_high)
+    )
+    assert f"{material} of {best:g} kg/m3, as such things mostly are" in " ".join(classify(item).assumptions)
+    sarcophagus = usual_material("cabinet", "sarcophagus", 1.0)
+    assert sarcophagus is not None
+    assert sarcophagus.material == "stone"
+    # A vase may be of anything.
+    assert usual_material("vessel", "vase", 0.3) is None
