@@ -12,9 +12,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from pipeline.analysis.akin import akin, forms, homographs, known
+from pipeline.analysis.akin import akin, forms, heads_of, homographs, known
 from pipeline.analysis.rule_table import (
     BREAK,
+    HEAD_FIRST,
     IDEOGRAPH,
     WORD,
     RuleMatch,
@@ -64,6 +65,10 @@ ANY_LIGHT = frozenset({"lamp", "light", "lampe", "lampada", "lampara", "lampa", 
 """Words that name a light of any kind, folded."""
 LIDS = frozenset({"lid", "cover", "deckel", "couvercle", "coperchio", "tapa", "deksel", "capac", "tampa"})
 """Words of what a thing may have and be no other kind for it, folded."""
+_JOINED_LID = re.compile(rf"\s(?:and|und|et|e|y|en|og|och|cu)\s+(?:{'|'.join(sorted(LIDS))})s?\s*$")
+"""What is said at the end of a name of a thing that has its lid."""
+LIDDED = "lidded vessel"
+"""What such a thing is."""
 FRAGMENTS = frozenset(
     {
         "fragment",
@@ -251,16 +256,17 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
                 return Readings(RuleMatch(rule, f"AAT {min(shared)}"), outright=True)
     kinds = _kinds(item.classification) | _kinds(item.object_name)
     classed, made = _wordless(item, kinds, of)
-    name = _named(item, item.object_name, kinds, of) if item.object_name else _made_as(item, kinds, of)
+    bare = _is_bare(item)
+    name = _named(item, item.object_name, kinds, of, alone=bare) if item.object_name else _made_as(item, kinds, of)
     # What a table of classifications knows, such as silkscreen, is no screen.
     called = _kinds(item.object_name)
     if name is None and item.object_name and not any(rule.kinds & called for rule in of.classed):
         text, share = akin(item.object_name[:_READ], of)
         kin = _named(item, text, kinds, of)
-        name = None if kin is None else replace(kin, share=share)
+        name = _headed(item, of) if kin is None else replace(kin, share=share)
     elif name is not None and item.object_name:
         share = _believed_at(item.object_name[:_READ], name.word, of)
-        name = replace(name, share=min(share, homographs().get(name.word, 1.0)))
+        name = replace(name, share=min(name.share, share, homographs().get(name.word, 1.0)))
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
     title = _named(item, item.title, kinds, of)
@@ -344,14 +350,37 @@ def _made_as(item: Item, kinds: frozenset[str], of: RuleTable) -> RuleMatch | No
     return found if head[-1] in (found.word, f"{found.word}s") else None
 
 
-def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleMatch | None:
-    """Return the first rule of the first naming word of a text that has one which fits."""
+def _named(
+    item: Item, text: str, kinds: frozenset[str], of: RuleTable, *, alone: bool = False
+) -> RuleMatch | None:
+    """Return the first rule of the first naming word of a text that has one which fits.
+
+    alone : whether a word counts whose rules ask for more than a record says that has nothing but this name
+    """
     if not text:
         return None
     for word in _candidates(text[:_READ], of):
-        for rule in of.by_word.get(word) or of.by_ending.get(word[1:], ()):
+        rules_of = of.by_word.get(word) or of.by_ending.get(word[1:], ())
+        for rule in rules_of:
             if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
                 return RuleMatch(rule, f"named {word!r}", word)
+        if alone:
+            return RuleMatch(rules_of[-1], f"named {word!r}", word, _HALF_KNOWN)
+    return None
+
+
+def _is_bare(item: Item) -> bool:
+    """Whether a record says nothing of a thing but what it is called."""
+    return not any((item.classification, item.material, item.medium, item.height_m, item.width_m, item.depth_m))
+
+
+def _headed(item: Item, of: RuleTable) -> RuleMatch | None:
+    """Return the rule of what things are classed as by the last word of an object name, or the first: installation vidéo."""
+    words = WORD.findall(next(_parts(_plain(item.object_name[:_READ])), ""))
+    for word in (*words[-1:], *heads_of(words[-1]), *words[:1]) if words else ():
+        classed, _ = _wordless(item, _kinds(word), of)
+        if classed is not None:
+            return replace(classed, evidence=f"named {word!r}", word=word, share=_HALF_KNOWN)
     return None
 
 
@@ -374,15 +403,26 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     thing, _, ornament = folded.partition(" ")
     if ornament and IDEOGRAPH.match(thing) and IDEOGRAPH.match(ornament) and thing in of.by_word:
         out.append(thing)  # 硯箱 猿月取蒔絵: a Japanese catalogue may name the thing first, and then what is on it
-    for part in _parts(folded):
+    parts = list(_parts(folded))
+    if len(parts) == 2 and _JOINED_LID.search(folded):
+        # Sugarbowl and cover: the lid is no thing of its own, and what has one is a vessel where nothing else is known.
+        parts, lidded = parts[:1], [LIDDED] if LIDDED in of.by_word else []
+    else:
+        lidded = []
+    for part in parts:
         found = WORD.findall(part)
         if len(found) > 1 and found[-1] in _ON_WALLS and found[-2] in of.by_word and _relief(of, found[-2]):
             found.pop()
-        for end in range(len(found), 0, -1):
-            for before, word in known(of, found[end - 1]):
-                if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
-                    out.append(word)
-    return tuple(out)
+        said = [
+            (end - 1 - len(before), word)
+            for end in range(len(found), 0, -1)
+            for before, word in known(of, found[end - 1])
+            if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1])
+        ]
+        if HEAD_FIRST.search(part):
+            said.sort(key=lambda pair: (pair[0], -len(pair[1])))
+        out += [word for _, word in said]
+    return (*out, *lidded)
 
 
 def _plain(text: str) -> str:
