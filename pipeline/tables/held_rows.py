@@ -124,15 +124,21 @@ def _first(word: str) -> tuple[str, ...]:
 
 
 def hangs_above(text: str) -> bool:
-    """Whether a text tells that a thing hangs from above; of most titles no row need be asked, which costs 0.3 ms."""
+    """Whether a text tells from what a thing hangs above; of most titles no row need be asked, which costs 0.7 ms.
+
+    A title that only says suspended is a name: Suspended Ball.
+    """
     folded = text.casefold()
-    return any(word in folded for word in _above()) and told_by(text).support is Support.SUSPENDED
+    if not any(word in folded for word in _above()):
+        return False
+    told = told_by(text)
+    return told.support is Support.SUSPENDED and told.furniture is Furniture.RAIL
 
 
 @cache
 def _above() -> frozenset[str]:
     """Return the longest part of each of the words for hanging from above: without it the words are not there."""
-    words = (word for told in _rows() if told.row.support is Support.SUSPENDED for word in told.row.words)
+    words = (word for told in _rows() if told.row.furniture is Furniture.RAIL for word in told.row.words)
     return frozenset(one for word in words for one in _first(word))
 
 
