@@ -279,9 +279,16 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     speaks = title if not flat or (title is not None and title.rule.name in FORMATS) else None
     if name is not None and name.rule.object_class in _THINGS and _OF_TECHNIQUE.search(fold(item.classification)):
         classed = None
+    if classed is not None and speaks is title is not None and _is_only_called_a_picture(title, classed):
+        speaks = None
     found = [one for one in (name or speaks, classed, made) if one is not None]
     decided = min(found, key=lambda one: one.rule.position, default=RuleMatch(of.rules[-1]))
     return Readings(decided, decided.rule.name in of.own, name, classed, made, title)
+
+
+def _is_only_called_a_picture(title: RuleMatch, classed: RuleMatch) -> bool:
+    """Whether a title names a picture of what is classed as sculpture: the kind of thing decides before its title."""
+    return title.rule.object_class in PICTURES and classed.rule.object_class in (*_FIGURES, "bust")
 
 
 def without_name(read: Readings, of: RuleTable | None = None) -> Readings:
