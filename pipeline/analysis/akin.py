@@ -179,7 +179,9 @@ def _short_heads(of: RuleTable) -> frozenset[str]:
                 many = counts.setdefault(head, [0, 0])
                 many[0] += _classes(word, of) == _classes(head, of)
                 many[1] += 1
-    return frozenset(head for head, (same, many) in counts.items() if many >= _BORNE_OUT and _share(same, many) >= _PRIOR)
+    return frozenset(
+        head for head, (same, many) in counts.items() if many >= _BORNE_OUT and _share(same, many) >= _PRIOR
+    )
 
 
 def _share(same: int, many: int) -> float:

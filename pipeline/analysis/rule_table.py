@@ -170,7 +170,7 @@ _SHOWN = 80
 _SAME = str.maketrans("ıيىكة", "iییکه")
 """Letters that nobody can tell apart, in Turkish capitals, or that Arabic and Persian write differently."""
 HEAD_FIRST = re.compile(r"[\u0590-\u06ff]")
-"""Letters of languages in which a thing is named before what it is of, with no word between: Arabic, Persian, Hebrew."""
+"""Letters of languages that name a thing before what it is of, with no word between: Arabic, Persian, Hebrew."""
 IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 """Letters of scripts that put no spaces between words: there one letter may precede an ending."""
 

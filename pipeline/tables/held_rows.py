@@ -105,7 +105,9 @@ def _rows() -> tuple[_Told, ...]:
 
 def _any(words: Sequence[str]) -> str:
     whole = [rf"^\s*{re.escape(word[1:])}\s*$" for word in words if word.startswith("=")]
-    some = [(word, re.escape(word).replace(r"\*", SOME_WORDS).replace(r"\~", _STEM)) for word in words if word[0] != "="]
+    some = [
+        (word, re.escape(word).replace(r"\*", SOME_WORDS).replace(r"\~", _STEM)) for word in words if word[0] != "="
+    ]
     # Chinese, Japanese and Korean part no words from each other; of the others one boundary is looked for, not each.
     joined = [inner for word, inner in some if _JOINED.search(word)]
     parted = [inner for word, inner in some if not _JOINED.search(word)]
@@ -119,7 +121,7 @@ def _both(word: str) -> str:
 
 def _first(word: str) -> tuple[str, ...]:
     """Return the longest part of each of the words one of which must be there."""
-    ones = word.split(_PAIR)[0].split("/")
+    ones = word.split(_PAIR, maxsplit=1)[0].split("/")
     return tuple(max(re.split(r"[\s*=~]+", one), key=len).casefold() for one in ones)
 
 

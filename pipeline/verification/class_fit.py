@@ -48,7 +48,7 @@ HIDDEN: tuple[tuple[tuple[str, ...], float], ...] = (
 RENAMED = 0.3
 """Weight of an object whose title is taken as its object name."""
 
-BARE = 3.0
+BARE = 1.5
 """Weight of what the table of rules says of a name that stands alone, for each rule that names things.
 
 Few of the labelled objects have nothing but a name, and museums that record little have many such.
