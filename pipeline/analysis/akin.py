@@ -7,6 +7,7 @@ table itself: of the words that it knows, how many are of the class that their o
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from functools import cache, lru_cache
 from typing import Annotated
 
@@ -38,8 +39,12 @@ _RELATED = 4
 """Letters from which a word may be a plural or a small kind of another."""
 _HEAD = 5
 """Letters that the head of a compound has at least: natuurtrompet is a trompet."""
+_SHORT, _BORNE_OUT = (4, 3), 4
+"""Letters of a shorter head, brushpot is a pot, and words of the table that must end so for it to be believed."""
 _BEFORE = 3
-"""Letters that stand before it at least."""
+"""Letters that stand before a head at least."""
+_SYLLABLE = re.compile(r"[\u1100-\u1112]")
+"""How a syllable of Korean begins, folded."""
 _PRIOR, _WEIGHT = 0.75, 2.0
 """How far an ending or a head is believed that no other word tells of, and for how many words that counts.
 
@@ -59,8 +64,12 @@ def known(of: RuleTable, word: str) -> tuple[tuple[tuple[str, ...], str], ...]:
         ((), f"*{ending}")
         for form in able
         for ending in of.endings.get(form[-1], ())
-        if form.endswith(ending) and len(form) >= len(ending) + (1 if IDEOGRAPH.match(ending) else _STEM)
+        if form.endswith(ending) and len(form) >= len(ending) + (0 if IDEOGRAPH.match(ending) else _STEM)
     ]
+    if IDEOGRAPH.search(word):
+        # Chinese and Japanese put what a thing is last: of its known endings the longest says it.
+        ends += [((), head) for head in heads_of(word) if head in of.by_word]
+        ends.sort(key=lambda pair: -len(pair[1].removeprefix("*")))
     return (*sorted(whole, key=lambda pair: -len(pair[0])), *ends)
 
 
@@ -116,7 +125,7 @@ def akin(text: str, of: RuleTable) -> tuple[str, float]:
     shares: list[float] = []
 
     def base(found: re.Match[str]) -> str:
-        own = known(of, found.group()) or found.group() in _materials()
+        own = any(not before for before, _ in known(of, found.group())) or found.group() in _materials()
         kin = None if own else _kin(found.group(), of)
         if kin is None:
             return found.group()
@@ -141,9 +150,42 @@ def _kin(word: str, of: RuleTable) -> tuple[str, str] | None:
         base = word.removesuffix(end) + other
         if word.endswith(end) and base != word and base in of.by_word:
             return base, f"-{end}"
-    heads = (form[at:] for form in forms(word) for at in range(_BEFORE, len(form) - _HEAD + 1))
-    head = next((one for one in heads if one in of.by_word), None)
-    return None if head is None or IDEOGRAPH.search(word) else (head, head)
+    if IDEOGRAPH.search(word):
+        return None
+    head = next((one for form in forms(word) for one in heads_of(form) if one in of.by_word), None)
+    if head is None:
+        short = (form[-letters:] for form in forms(word) for letters in _SHORT if len(form) >= letters + _BEFORE)
+        head = next((one for one in short if one in _short_heads(of)), None)
+    return None if head is None else (head, head)
+
+
+def heads_of(word: str) -> Iterator[str]:
+    """Yield what may be the head of a compound, the longest first; of Korean whole syllables, of signs two at least."""
+    if IDEOGRAPH.search(word):
+        yield from (word[at:] for at in range(1, len(word) - 1))
+        return
+    syllables = [found.start() for found in _SYLLABLE.finditer(word)]
+    starts = syllables[1:-1] if syllables else range(_BEFORE, len(word) - _HEAD + 1)
+    yield from (word[at:] for at in starts)
+
+
+@lru_cache(maxsize=8)
+def _short_heads(of: RuleTable) -> frozenset[str]:
+    """Return the short words that the table bears out as heads: three of four words that end so are of their class."""
+    counts: dict[str, list[int]] = {}
+    for word in of.by_word:
+        for head in (word[-letters:] for letters in _SHORT if len(word) >= letters + _BEFORE):
+            if " " not in word and head in of.by_word and not IDEOGRAPH.search(word):
+                many = counts.setdefault(head, [0, 0])
+                many[0] += _classes(word, of) == _classes(head, of)
+                many[1] += 1
+    return frozenset(
+        head for head, (same, many) in counts.items() if many >= _BORNE_OUT and _share(same, many) >= _PRIOR
+    )
+
+
+def _share(same: int, many: int) -> float:
+    return (same + _PRIOR * _WEIGHT) / (many + _WEIGHT)
 
 
 @lru_cache(maxsize=8)
@@ -156,7 +198,7 @@ def _believed(of: RuleTable) -> dict[str, float]:
             many = counts.setdefault(kin[1], [0, 0])
             many[0] += _classes(word, of) == _classes(kin[0], of)
             many[1] += 1
-    return {way: min(_MOST, (same + _PRIOR * _WEIGHT) / (many + _WEIGHT)) for way, (same, many) in counts.items()}
+    return {way: min(_MOST, _share(same, many)) for way, (same, many) in counts.items()}
 
 
 def _classes(word: str, of: RuleTable) -> str:

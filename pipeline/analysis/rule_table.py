@@ -154,8 +154,9 @@ _SMALL_WORDS = (
     "av|af|med|till|til|fran|fra|for|och|og|som",
     "с|из|для|на|в|от",
     "με|απο|σε|για|του|της|και",
+    "من|مع|علی|فی|از|با|در|بر|و",
 )
-"""Words of eleven languages, folded, that end the name of a thing: prepositions, joined articles, genitives."""
+"""Words of thirteen languages, folded, that end the name of a thing: prepositions, joined articles, genitives."""
 BREAK = re.compile(rf"[,:;|()\[\]{{}}/\"]|\s(?:{'|'.join(_SMALL_WORDS)}|銘)\s|\s[dl]['\u2019]")
 """Where the name of a thing ends and its description begins."""
 _SUPPORT = re.compile(
@@ -166,6 +167,10 @@ _ELIDED = re.compile(r"(?<= )([dl]) ")
 """What is left of an article before a vowel, where the table's words are parted: cartel d applique."""
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
+_SAME = str.maketrans("ıيىكة", "iییکه")
+"""Letters that nobody can tell apart, in Turkish capitals, or that Arabic and Persian write differently."""
+HEAD_FIRST = re.compile(r"[\u0590-\u06ff]")
+"""Letters of languages that name a thing before what it is of, with no word between: Arabic, Persian, Hebrew."""
 IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 """Letters of scripts that put no spaces between words: there one letter may precede an ending."""
 
@@ -174,8 +179,7 @@ IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 def fold(text: str) -> str:
     """Return a text without capitals and accents, so that Büste, buste and BUSTE are the same word."""
     if not text.isascii():
-        # In capitals nobody can tell the two i of Turkish apart.
-        text = "".join(c for c in normalize("NFKD", text) if not combining(c)).replace("ı", "i")
+        text = "".join(c for c in normalize("NFKD", text) if not combining(c)).translate(_SAME)
         text = shortened_signs(text)
     return text.casefold()
 

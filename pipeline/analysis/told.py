@@ -5,11 +5,12 @@ from dataclasses import replace
 from functools import cache
 from textwrap import shorten
 
+from pipeline.analysis.rules import PICTURES, readings
 from pipeline.quantities import LENGTHS
 from pipeline.records import Furniture, Hanging, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
-from pipeline.tables.held_rows import CASES, hangs_above, told_by, words_for
+from pipeline.tables.held_rows import CASES, hangs_above, stands_too, told_by, words_for
 from pipeline.tables.rows import any_of
 from pipeline.tables.surface_rows import surfaces_in
 
@@ -38,6 +39,9 @@ HANGS_FROM = 0.5
 
 _ABOVE = (Support.HUNG, Support.SUSPENDED)
 
+_TOGETHER = ((Support.FASTENED, Support.FREESTANDING), (Support.ISOLATED, Support.FREESTANDING))
+"""How a thing is held, and what may be said of it besides: what is made fast stands too."""
+
 _TO_STAND_ON = (Furniture.FLOOR, Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
 
 _IN_CASES = (Furniture.SHOWCASE, Furniture.SHELF)
@@ -52,7 +56,7 @@ def as_displayed(item: Item) -> Item:
         The record.
     """
     if not item.displayed.strip():
-        item = _as_titled(item)
+        item = _as_titled(_as_placed(item))
     if not item.displayed.strip():
         return item
     told = told_by(item.displayed)
@@ -68,14 +72,24 @@ def as_displayed(item: Item) -> Item:
     )
 
 
+def _as_placed(item: Item) -> Item:
+    """Return a record with what its field for cases says, where that names none: "on the wall", "stands on floor"."""
+    told = told_by(item.case) if item.case.strip() and not _names_case(item) else None
+    if told is None or not (told.support in _ABOVE or told.furniture is Furniture.FLOOR):
+        return item
+    return replace(item, displayed=item.case, case="")
+
+
 def _as_titled(item: Item) -> Item:
     """Return a record as displayed as its title says of a large thing that hangs: "Dinghy suspended above stairs".
 
-    A pendant is suspended from its chain: what is small is not meant.
+    A pendant is suspended from its chain: what is small is not meant.  Nor is what a picture shows.
     """
     open_ = item.support is None and item.furniture is None
     large = max(item.height_m or 0.0, item.width_m or 0.0, item.depth_m or 0.0) >= HANGS_FROM
-    return replace(item, displayed=item.title) if open_ and large and hangs_above(item.title) else item
+    if not (open_ and large and hangs_above(item.title)) or readings(item).decided.rule.object_class in PICTURES:
+        return item
+    return replace(item, displayed=item.title)
 
 
 def line_of(words: str) -> float | None:
@@ -116,11 +130,18 @@ def display_note(item: Item, support: Support) -> tuple[str, ...]:
     support : Support
         How it is taken to be held.
     """
-    if told_by(item.displayed).support is not support:
-        return ()
-    said = say.HELD_AS_DISPLAYED if held_as_displayed(item, support) else say.DISPLAYED
+    told = told_by(item.displayed).support
     words = shorten(item.displayed.replace(";", ","), _QUOTED, placeholder="...")
-    return (said(support=support.value, words=words),)
+    if told is None:
+        return ()
+    notes = []
+    if told is support:
+        said = say.HELD_AS_DISPLAYED if held_as_displayed(item, support) else say.DISPLAYED
+        notes.append(said(support=support.value, words=words))
+    other = told if told is not support else Support.FREESTANDING if stands_too(item.displayed) else support
+    if other is not support and (support, other) not in _TOGETHER:
+        notes.append(say.SAID_OTHERWISE(support=support.value, other=other.value, words=words))
+    return tuple(notes)
 
 
 def as_told(item: Item, row: ObjectClass) -> Item:

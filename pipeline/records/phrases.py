@@ -6,6 +6,10 @@ SUPPORT = Clause("support: {support}, assumed for: {told}")
 SUPPORT_FIXED = Clause("support: {support}, assumed for a post that stands in a footing")
 SUPPORT_TOLD = Clause("support: {support}, as its record says on what it stands")
 DISPLAYED = Clause("support: {support}, as its record says of its display: {words}")
+SAID_OTHERWISE = Clause(
+    "its record contradicts itself: it is {support}, and {other} by the words for its display, so see which holds: "
+    "{words}"
+)
 HELD_AS_DISPLAYED = Clause(
     "support: {support}, taken as made fast at its base until the brace, clips or ties that its record tells of are "
     "recorded as installed: {words}"

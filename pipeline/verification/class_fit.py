@@ -48,7 +48,7 @@ HIDDEN: tuple[tuple[tuple[str, ...], float], ...] = (
 RENAMED = 0.3
 """Weight of an object whose title is taken as its object name."""
 
-BARE = 3.0
+BARE = 1.5
 """Weight of what the table of rules says of a name that stands alone, for each rule that names things.
 
 Few of the labelled objects have nothing but a name, and museums that record little have many such.
@@ -117,7 +117,8 @@ def _bare() -> Mapping[tuple[tuple[str, ...], str], float]:
     for word in sorted(rules().by_word):
         item = Item("-", "", object_name=word)
         read = readings(item)
-        if read.name is not None and read.name is read.decided:
+        # A word that is only half believed is weighed by its share, and teaches nothing.
+        if read.name is not None and read.name is read.decided and read.name.share == 1.0:
             out[signs_of(item, read), read.decided.rule.object_class] = BARE
     return out
 
