@@ -60,7 +60,7 @@ _SIDES = ("height_m", "width_m", "depth_m", "diameter_m")
 
 _NAMING = ("title", "object_name", "classification", "medium")
 
-_TABLES = ("csv", "tsv", "xlsx", "sql", "json")
+_TABLES = ("csv", "tsv", "fixed", "xlsx", "sql", "json")
 """Formats whose columns are the museum's own."""
 
 _FORMATS = {"lido": "lido", "adlib": "adlib", "museumplus_ria": "museumplus", "linked_art": "linked_art"}

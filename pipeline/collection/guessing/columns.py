@@ -26,7 +26,7 @@ from pipeline.collection.guessing.names import (
 )
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
-from pipeline.collection.sources.measurement_terms import kind_of, unit_of
+from pipeline.collection.sources.measurement_terms import kind_within, unit_of
 from pipeline.collection.sources.measurements import IN_WORDS, OTHER
 from pipeline.errors import InputError
 
@@ -34,8 +34,8 @@ NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
 _SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d|\d\s*[×*]\s*\d", re.DOTALL)
-_BOTH = 0.05
-"""How many objects with length and depth there may be for each that has a length alone (judgement)."""
+BOTH = 0.05
+"""How many objects with both of two sizes there may be for each that has one alone (judgement)."""
 
 _NAMED = ("height", "width", "depth", "diameter", "length")
 
@@ -47,6 +47,13 @@ FEWEST_TOLD = 3
 
 _LONGEST = 40
 """Characters up to which a text is rather the number of an object than a sentence (judgement)."""
+
+_OF_MACHINE = re.compile(
+    r"(?:https?|oai|urn|info|hdl):\S+$|[0-9a-f]{8}(?:-[0-9a-f]{4}){3}-[0-9a-f]{12}$", re.IGNORECASE
+)
+_MOSTLY = 0.9
+"""Share of the texts of a column that must be of programs (judgement)."""
+_IN_WORDS = frozenset(("title", "object_name", "classification", "medium", "gallery", DESCRIPTION))
 
 _SOME = 200
 """Cells from which it is told what a column holds."""
@@ -127,7 +134,7 @@ class Column:
     @cached_property
     def kinds(self) -> float:
         """Share of its texts that name a kind of measurement."""
-        return _share(self.filled, kind_of)
+        return _share(self.filled, kind_within)
 
     @cached_property
     def units(self) -> float:
@@ -151,6 +158,12 @@ class Column:
     def length(self) -> float:
         """Characters of its texts in the middle."""
         return median(map(len, self.filled)) if self.filled else 0.0
+
+    @cached_property
+    def of_machine(self) -> bool:
+        """Whether most of its texts are addresses, or numbers by which only programs know an object."""
+        some = self.filled[:_SOME]
+        return bool(some) and sum(bool(_OF_MACHINE.match(text)) for text in some) > _MOSTLY * len(some)
 
     @property
     def prose(self) -> bool:
@@ -221,7 +234,8 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
         what = said[id(column)]
         # A column called "media" may hold pictures, or their numbers.
         pictures = what is not None and what.field == "medium" and (column.numeric or column.pictured > 0.5)
-        if what is not None and not pictures:
+        # An address names nothing in words.
+        if what is not None and not pictures and not (what.field in _IN_WORDS and column.of_machine):
             found.setdefault(what.field, []).append((what, column))
     out: dict[str, list[Column]] = {}
     for name, able in found.items():
@@ -237,6 +251,7 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
                 key=lambda pair: (
                     2 * len(pair[1].filled) <= most and most > 0,
                     pair[1].says_one,
+                    name == "object_number" and pair[1].of_machine,
                     pair[0].internal,
                     pair[0].rank,
                     is_code(pair[1].name),
@@ -259,12 +274,12 @@ def length_beside(columns: Sequence[Column], depth: Column | None) -> Column | N
     column = next(said, None)
     if column is None or depth is None or unit_in(column.name)[1] != unit_in(depth.name)[1]:
         return None
-    pairs = [(bool(_told(one)), bool(_told(other))) for one, other in zip(column.values, depth.values, strict=False)]
+    pairs = [(bool(tells(one)), bool(tells(other))) for one, other in zip(column.values, depth.values, strict=False)]
     alone, both = pairs.count((True, False)), pairs.count((True, True))
-    return column if alone and both <= _BOTH * alone else None
+    return column if alone and both <= BOTH * alone else None
 
 
-def _told(text: str) -> bool:
+def tells(text: str) -> bool:
     """Whether a cell says a number other than nought."""
     return bool(text.strip(" 0.,"))
 

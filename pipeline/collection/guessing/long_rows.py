@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 
 from pipeline.collection.guessing.columns import NUMBER, Column, candidates
 from pipeline.collection.guessing.names import named, plain, unit_in
-from pipeline.collection.sources.base import LongForm, LongSide
-from pipeline.collection.sources.measurement_terms import kind_of, part_of, plain_word, unit_of
+from pipeline.collection.sources.base import LongAgain, LongForm, LongSide
+from pipeline.collection.sources.measurement_terms import kind_of, kind_within, part_of, plain_word, unit_of
+from pipeline.collection.sources.measurements import FRACTION
 
 _LETTERS = frozenset(("h", "b", "l", "t", "d", "w", "p", "a", "dm", "dia", "diam", "ø", "g", "gew", "wt", "kg"))
 """Letters by which kinds are told, in any language; the words beside them say which is which."""
@@ -22,7 +23,11 @@ _KIND = {"mass": "weight"}
 FEWEST_SIDES, FEWEST_SEVERAL = 2, 2
 """Columns of sides, and objects with several rows, from which rows are taken for those of parts (judgement)."""
 APART = 0.8
-"""Share of these objects whose rows each must name another part (judgement)."""
+"""Share of these objects whose rows each must name another part, and of cells that must say as many things as others
+beside them (judgement)."""
+
+_MOSTLY = 0.6
+"""Share of the texts of a column that must be kinds, units or numbers (judgement)."""
 
 VALUES = frozenset(
     {
@@ -93,25 +98,49 @@ def _within(columns: Sequence[Column]) -> LongForm | None:
     for separator in _SEPARATORS:
         apart = [(c, [text.split(separator) for text in c.values[:200]]) for c in columns]
         apart = [(c, pieces) for c, pieces in apart if any(len(one) > 1 for one in pieces)]
-        found: dict[str, Column] = {}
+        found: dict[str, list[tuple[Column, list[list[str]]]]] = {"type": [], "unit": [], "value": []}
         for column, pieces in apart:
             some = [piece.strip() for one in pieces for piece in one if piece.strip()]
-            for name, tells in (("type", kind_of), ("unit", unit_of), ("value", _number)):
+            for name, tells in (("type", kind_within), ("unit", unit_of), ("value", _number)):
                 # Blanks between separators name nothing: " | ".
-                if some and name not in found and sum(tells(text) is not None for text in some) >= 0.6 * len(some):
-                    found[name] = column
+                if some and sum(tells(text) is not None for text in some) >= _MOSTLY * len(some):
+                    found[name].append((column, pieces))
                     break
         objects = [c for c in candidates(columns).get("object_number", ()) if c.filled]
-        if {"type", "value"} <= found.keys() and objects:
-            unit = found.get("unit")
-            return LongForm(
-                object=objects[0].name,
-                type=found["type"].name,
-                value=found["value"].name,
-                unit=None if unit is None else unit.name,
-                separator=separator,
-            )
+        for kind, kinds in found["type"] if objects else ():
+            values = [column for column, pieces in found["value"] if _even(kinds, pieces)]
+            # Decimals before fractions.
+            values.sort(key=lambda one: sum("/" in text for text in one.filled))
+            units = [column for column, _ in found["unit"]]
+            pairs = [(value, _unit_beside(value, units, columns)) for value in values]
+            if pairs:
+                told = [(value.name, None if unit is None else unit.name) for value, unit in pairs]
+                return LongForm(
+                    object=objects[0].name,
+                    type=kind.name,
+                    value=told[0][0],
+                    unit=told[0][1],
+                    separator=separator,
+                    again=tuple(LongAgain(value=value, unit=unit) for value, unit in told[1:] if unit != told[0][1]),
+                )
     return None
+
+
+def _even(kinds: Sequence[Sequence[str]], values: Sequence[Sequence[str]]) -> bool:
+    """Whether nearly all cells of two columns that say anything say as many things."""
+    both = [(one, other) for one, other in zip(kinds, values, strict=True) if any(one) or any(other)]
+    return sum(len(one) == len(other) for one, other in both) >= APART * len(both)
+
+
+def _unit_beside(value: Column, units: Sequence[Column], columns: Sequence[Column]) -> Column | None:
+    """Return the column of the units of one of numbers: the one whose name says what its name says, else the nearest."""
+    places = {id(column): at for at, column in enumerate(columns)}
+    words = set(plain(value.name).split())
+    return min(
+        units,
+        key=lambda unit: (len(words ^ set(plain(unit.name).split())), abs(places[id(unit)] - places[id(value)])),
+        default=None,
+    )
 
 
 def _of_parts(columns: Sequence[Column]) -> LongForm | None:
@@ -161,7 +190,7 @@ def _differ(column: Column, rows: Sequence[int]) -> bool:
 
 
 def _number(text: str) -> str | None:
-    return text if NUMBER.fullmatch(text) else None
+    return text if NUMBER.fullmatch(text) or FRACTION.fullmatch(text) else None
 
 
 def _parts(column: Column) -> float:

@@ -16,7 +16,15 @@ from pipeline.collection.guessing.columns import Column, candidates, columns_of
 from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.headings import has_headings
 from pipeline.collection.guessing.long_rows import long_form_of
-from pipeline.collection.guessing.text_files import LOOKED_AT, delimiter_of, encoding_of, first_lines, table_head
+from pipeline.collection.guessing.text_files import (
+    LOOKED_AT,
+    delimiter_of,
+    encoding_of,
+    first_lines,
+    is_sideways,
+    starts_of,
+    table_head,
+)
 from pipeline.collection.limits import STANDARD
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.mapping import load_mapping
@@ -38,7 +46,7 @@ from pipeline.collection.sources.xml_records import XML_FILES
 READ = 2000
 """Rows that the guess is made from."""
 
-_HEADED = ("csv", "tsv", "xlsx")
+_HEADED = ("csv", "tsv", "fixed", "xlsx")
 """Formats of tables that people write, with headings between their rows perhaps."""
 
 SNIFFED = 1 << 18
@@ -126,6 +134,16 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         raise CollectionError(f"--choose encoding: there is no encoding {encoding!r}; try utf-8 or cp1252") from problem
     delimiter = told.choices.get("delimiter", "").replace("tab", "\t") or delimiter_of(text)
     source: dict[str, Any] = {"format": "tsv", "encoding": encoding}
+    starts = () if "delimiter" in told.choices else starts_of(text)
+    if starts:
+        rows = first_lines(text, starts, LOOKED_AT + 60)
+        if table_head(rows).known > table_head(first_lines(text, delimiter, LOOKED_AT + 60)).known:
+            source |= {"format": "fixed", "starts": list(starts)}
+            told.sure.append(
+                f"{encoding}, cells below each other, from the characters {', '.join(map(str, starts))} on"
+            )
+            _set_head(source, rows, told)
+            return source
     if delimiter != "\t":
         source = {"format": "csv", "encoding": encoding, "delimiter": delimiter}
     told.sure.append(f"{encoding}, cells parted by {delimiter!r}")
@@ -219,6 +237,11 @@ _AGAIN = 0.1
 
 def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: GuessNotes) -> None:
     """Say where the columns are named, where that is not the first row alone."""
+    several = next((at for at, (_, cells) in enumerate(rows) if sum(bool(cell.strip()) for cell in cells) > 1), 0)
+    if rows and "header_row" not in told.choices and is_sideways(rows[several:]):
+        source |= {"sideways": True} | ({"header_row": rows[several][0]} if several else {})
+        told.sure.append("objects stand side by side: each column is one, and the first cell of each row names a field")
+        return
     head = table_head(rows)
     row, many = head.row, head.rows
     try:

@@ -13,6 +13,8 @@ from unicodedata import category
 
 from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
+from pipeline.collection.guessing.names import named
+from pipeline.collection.sources.delimited import cut_at
 from pipeline.collection.sources.heads import is_of_units, joined_heads
 from pipeline.tables import table
 
@@ -139,15 +141,46 @@ def delimiter_of(text: str) -> str:
     return max(_DELIMITERS, key=regular)
 
 
-def first_lines(text: str, delimiter: str, most: int) -> list[tuple[int, list[str]]]:
+_RULE = re.compile(r"[-=_]{2,}")
+_SEEN, _LEAST = 200, 3
+"""Lines from which it is told where cells begin, and how many of them and of their columns there must be."""
+
+
+def starts_of(text: str) -> tuple[int, ...]:
+    """Return at which characters of each line, from 1 on, the cells of a printed list begin; () of any other text.
+
+    A line of dashes below the head tells it, or else the places that are blank in all lines.
+
+    Parameters
+    ----------
+    text : str
+        How the file begins.
+    """
+    lines = [line.rstrip() for line in text.lstrip("\ufeff").splitlines()[:_SEEN] if line.strip()]
+    if len(lines) <= _LEAST or any("\t" in line for line in lines):
+        return ()
+    rule = next((line for line in lines if not line.strip(" -=_+|")), "")
+    told = [found.start() + 1 for found in _RULE.finditer(rule)]
+    if len(told) >= _LEAST:
+        return (1, *told[1:])
+    width = max(map(len, lines))
+    filled = [sum(at < len(line) and line[at] != " " for line in lines) for at in range(width)]
+    begun = [1, *(at + 1 for at in range(1, width) if filled[at] and not filled[at - 1])]
+    # What stands in one line alone, or beyond a short head, is a longer text and no column.
+    head = lines[0]
+    begun = [at for at in begun if at == 1 or (at <= len(head) and head[at - 1] != " " and head[at - 2] == " ")]
+    return tuple(begun) if len(begun) >= _LEAST else ()
+
+
+def first_lines(text: str, delimiter: str | tuple[int, ...], most: int) -> list[tuple[int, list[str]]]:
     """Return the first rows of a text that are not blank, with the line where each begins.
 
     Parameters
     ----------
     text : str
         How the file begins.
-    delimiter : str
-        Between two cells.
+    delimiter : str or tuple of int
+        Between two cells, or where cells begin.
     most : int
         Rows.
 
@@ -156,7 +189,11 @@ def first_lines(text: str, delimiter: str, most: int) -> list[tuple[int, list[st
     list of (int, list of str)
         Until one that cannot be read.
     """
-    reader = csv.reader(text.lstrip("\ufeff").splitlines(keepends=True), delimiter=delimiter)
+    lines = text.lstrip("\ufeff").splitlines(keepends=True)
+    if not isinstance(delimiter, str):
+        cut = ((number, cut_at(delimiter, line)) for number, line in enumerate(lines, start=1))
+        return list(islice(((number, cells) for number, cells in cut if any(cells)), most))
+    reader = csv.reader(lines, delimiter=delimiter)
     out = []
     before = 0
     try:
@@ -170,6 +207,29 @@ def first_lines(text: str, delimiter: str, most: int) -> list[tuple[int, list[st
 
 
 _DIGITS = re.compile(r"\d+")
+
+
+def is_sideways(rows: Sequence[tuple[int, list[str]]]) -> bool:
+    """Say whether a table has its fields below each other and its objects side by side.
+
+    That is where its first column names the objects' numbers and other fields, each once, and no row does.
+
+    Parameters
+    ----------
+    rows : sequence of (int, list of str)
+        As of `table_head`.
+    """
+    first = [cells[0].strip() for _, cells in rows if cells and cells[0].strip()]
+    if len(set(first)) < len(first) or len(first) < _FEWEST_FIELDS:
+        return False
+    told = {meant.field for name in first if (meant := named(name)) is not None}
+    across = max(len({what.field for cell in cells if (what := named(cell)) is not None}) for _, cells in rows)
+    known = sum(named(name) is not None for name in first)
+    return "object_number" in told and len(told) >= _FEWEST_FIELDS > across and known >= _MOST_OF * len(first)
+
+
+_FEWEST_FIELDS, _MOST_OF = 3, 0.5
+"""Fields that a first column must name, and what share of its texts must name some (judgement)."""
 
 
 @dataclass(frozen=True)

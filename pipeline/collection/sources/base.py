@@ -38,6 +38,15 @@ class LongSide(BaseModel):
     unit: str = Field(default="", description="Unit of the numbers that name none.")
 
 
+class LongAgain(BaseModel):
+    """Columns that tell the same measurements once more, in a source in long form."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    value: Name = Field(description="The column with the numbers.")
+    unit: Name | None = Field(default=None, description="The column with their units.")
+
+
 class LongForm(BaseModel):
     """A source in long form: several rows an object, each with one of its measurements, or with one of its parts."""
 
@@ -50,6 +59,10 @@ class LongForm(BaseModel):
     value: Name | None = Field(default=None, description="The column with the numbers.")
     unit: Name | None = Field(default=None, description="The column with their units.")
     part: Name | None = Field(default=None, description="The column that says of which part, such as whole or frame.")
+    again: tuple[LongAgain, ...] = Field(
+        default=(),
+        description="Columns with the same measurements in other units: what contradicts the first ones is refused.",
+    )
     separator: str = Field(
         default="",
         max_length=3,
