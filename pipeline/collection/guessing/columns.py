@@ -443,7 +443,7 @@ def sentences_of_dimensions(columns: Sequence[Column], told: Sequence[Column], u
     able = [column for column in columns if id(column) not in taken and (column.prose or _describes(column))]
     if not told or not able:
         return None
-    bare = [not any(_told(cell) for cell in cells) for cells in zip(*(one.values for one in told), strict=True)]
+    bare = [not any(tells(cell) for cell in cells) for cells in zip(*(one.values for one in told), strict=True)]
     often = [
         (sum(_tells_sides(text) for text, alone in zip(column.values, bare, strict=True) if alone), column)
         for column in able

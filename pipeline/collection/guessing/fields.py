@@ -10,7 +10,8 @@ import tomlkit
 
 from pipeline.collection.display_words import flag_of, says_away, says_flags, tells_nothing
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.guessing.columns import NUMBER, Column, goes_on_in
+from pipeline.collection.guessing.columns import NUMBER, Column
+from pipeline.collection.guessing.going_on import goes_on_in
 from pipeline.collection.guessing.names import TEXTS, bare, named, unit_in
 from pipeline.collection.guessing.units import FEET, usual_unit
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
@@ -238,14 +239,8 @@ class Fields:
             if name == "depth_m" and self.length is not None and entry is not None and "column" in entry:
                 self._or_length(entry, self.length)
                 used.append(self.length)
-            more = (
-                goes_on_in(column, self.columns) if entry is not None and units_of(name) and "column" in entry else None
-            )
-            if entry is not None and more is not None and entry.get("unit") == WRITTEN:
-                del entry["column"]
-                entry["columns"], entry["first"] = [column.name, more.name], True
-                self.questions[:] = [question for question in self.questions if question.key != name]
-                used.append(more)
+            if entry is not None and entry.get("unit") == WRITTEN and "column" in entry:
+                used += self._going_on(name, column, entry)
             if name == "medium" and self.medium:
                 entry = tomlkit.table()
                 entry["columns"], entry["separator"] = [one.name for one in self.medium], ", "
@@ -260,6 +255,15 @@ class Fields:
         entry["columns"], entry["first"] = [column.name, usual.name], True
         self.doubts.append(f"an object's place is {column.name!r}, and where that is empty {usual.name!r}")
         return entry
+
+    def _going_on(self, name: str, column: Column, entry: tomlkit.items.Table) -> list[Column]:
+        more = goes_on_in(column, self.columns)
+        if more is None:
+            return []
+        del entry["column"]
+        entry["columns"], entry["first"] = [column.name, more.name], True
+        self.questions[:] = [question for question in self.questions if question.key != name]
+        return [more]
 
     def _or_length(self, entry: tomlkit.items.Table, length: Column) -> None:
         depth = str(entry.pop("column"))

@@ -133,7 +133,7 @@ def _even(kinds: Sequence[Sequence[str]], values: Sequence[Sequence[str]]) -> bo
 
 
 def _unit_beside(value: Column, units: Sequence[Column], columns: Sequence[Column]) -> Column | None:
-    """Return the column of the units of one of numbers: the one whose name says what its name says, else the nearest."""
+    """Return the column with the units of one of numbers: the one whose name is most like its own, or the nearest."""
     places = {id(column): at for at, column in enumerate(columns)}
     words = set(plain(value.name).split())
     return min(

@@ -139,9 +139,7 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         rows = first_lines(text, starts, LOOKED_AT + 60)
         if table_head(rows).known > table_head(first_lines(text, delimiter, LOOKED_AT + 60)).known:
             source |= {"format": "fixed", "starts": list(starts)}
-            told.sure.append(
-                f"{encoding}, cells below each other, from the characters {', '.join(map(str, starts))} on"
-            )
+            told.sure.append(f"{encoding}, cells below each other, from characters {', '.join(map(str, starts))} on")
             _set_head(source, rows, told)
             return source
     if delimiter != "\t":

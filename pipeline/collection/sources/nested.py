@@ -286,7 +286,7 @@ def _in_part(kind: str, number: str, unit: str, own: str, part: str) -> tuple[st
 
 
 def _literal(value: Mapping[str, Any]) -> Any:
-    """Return the value of a literal or an address of a graph, as answers to SPARQL have them; None for anything else."""
+    """Return the value of a literal or an address of a graph, as answers to SPARQL have it; None for anything else."""
     if "value" in value and value.keys() <= _LITERAL and value.get("type") in _LITERALS:
         return value["value"] if isinstance(value["value"], _SCALARS) else None
     return None
