@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Callable, Iterable, Sequence
 
 from pipeline.collection.guessing.columns import NUMBER, Column, candidates
 from pipeline.collection.guessing.names import named, plain, unit_in
@@ -25,6 +26,8 @@ FEWEST_SIDES, FEWEST_SEVERAL = 2, 2
 APART = 0.8
 """Share of these objects whose rows each must name another part, and of cells that must say as many things as others
 beside them (judgement)."""
+
+_FIGURES = re.compile(r"(?<!\d)\d{1,3}(?!\d)")
 
 _MOSTLY = 0.6
 """Share of the texts of a column that must be kinds, units or numbers (judgement)."""
@@ -55,7 +58,7 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
     -------
     LongForm or None
     """
-    within = _within(columns) or _of_parts(columns)
+    within = _numbered(columns) or _within(columns) or _of_parts(columns)
     if within is not None:
         return within
     types = [c for c in columns if (c.kinds >= 0.6 or _lettered(c)) and len(c.distinct) > 1]
@@ -124,6 +127,46 @@ def _within(columns: Sequence[Column]) -> LongForm | None:
                     again=tuple(LongAgain(value=value, unit=unit) for value, unit in told[1:] if unit != told[0][1]),
                 )
     return None
+
+
+def _numbered(columns: Sequence[Column]) -> LongForm | None:
+    """Return how several measurements of a row are read, each in columns of its number: "Measurement 2 type"."""
+    found: dict[int, dict[str, Column]] = {}
+    for column in columns:
+        for place in _FIGURES.finditer(column.name):
+            role = f"{column.name[: place.start()]}#{column.name[place.end() :]}"
+            found.setdefault(int(place[0]), {})[role] = column
+    pooled: dict[str, list[str]] = {}
+    for of in found.values():
+        for role, column in of.items():
+            pooled.setdefault(role, []).extend(column.filled)
+    whole = {
+        role: Column(role, texts) for role, texts in pooled.items() if sum(role in of for of in found.values()) > 1
+    }
+    kinds = [role for role, one in whole.items() if one.kinds >= _MOSTLY and len(one.distinct) > 1]
+    numbers = [role for role, one in whole.items() if one.numeric or _share_of(one, _number) >= _MOSTLY]
+    objects = [c for c in candidates(columns).get("object_number", ()) if c.filled]
+    if not (kinds and numbers and objects):
+        return None
+    units = [role for role, one in whole.items() if one.units >= _MOSTLY and role not in kinds]
+    parts = [role for role, one in whole.items() if role not in (*kinds, *numbers, *units) and _parts(one) >= 0.5]
+    kind, number = kinds[0], min(numbers, key=lambda role: len(set(plain(role).split()) ^ set(plain(kinds[0]).split())))
+
+    def called(of: dict[str, Column], roles: list[str]) -> str | None:
+        return next((of[role].name for role in roles if role in of), None)
+
+    rows = [of for _, of in sorted(found.items()) if kind in of and number in of]
+    if len(rows) < FEWEST_SEVERAL:
+        return None
+    first, *others = (
+        {"type": of[kind].name, "value": of[number].name, "unit": called(of, units), "part": called(of, parts)}
+        for of in rows
+    )
+    return LongForm(object=objects[0].name, again=tuple(LongAgain(**one) for one in others), **first)
+
+
+def _share_of(column: Column, known: Callable[[str], object]) -> float:
+    return sum(known(text) is not None for text in column.filled) / len(column.filled) if column.filled else 0.0
 
 
 def _even(kinds: Sequence[Sequence[str]], values: Sequence[Sequence[str]]) -> bool:

@@ -16,10 +16,12 @@ from pipeline.collection.guessing.columns import Column, candidates, columns_of
 from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.headings import has_headings
 from pipeline.collection.guessing.long_rows import long_form_of
+from pipeline.collection.guessing.names import named
 from pipeline.collection.guessing.text_files import (
     LOOKED_AT,
     delimiter_of,
     encoding_of,
+    first_label,
     first_lines,
     is_sideways,
     starts_of,
@@ -32,7 +34,7 @@ from pipeline.collection.opening import open_source
 from pipeline.collection.sources.files import head_of, unpacked, unreadable
 from pipeline.collection.sources.folders import Folder
 from pipeline.collection.sources.headings import HEADING, under_headings
-from pipeline.collection.sources.json_objects import list_in
+from pipeline.collection.sources.json_objects import at_path, is_keyed, list_in
 from pipeline.collection.sources.json_records import files_of as json_files
 from pipeline.collection.sources.json_records import read_values
 from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
@@ -48,6 +50,9 @@ READ = 2000
 
 _HEADED = ("csv", "tsv", "fixed", "xlsx")
 """Formats of tables that people write, with headings between their rows perhaps."""
+
+MOST_NAMED = 0.2
+"""Share of the names before objects that may be those of fields (judgement)."""
 
 SNIFFED = 1 << 18
 """Bytes from which encoding and delimiter are told."""
@@ -132,6 +137,10 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         text = head.decode(encoding, "ignore")
     except LookupError as problem:
         raise CollectionError(f"--choose encoding: there is no encoding {encoding!r}; try utf-8 or cp1252") from problem
+    label = "" if {"delimiter", "header_row"} & told.choices.keys() else first_label(text)
+    if label:
+        told.sure.append(f"{encoding}, records of labelled lines, each from {label!r} on")
+        return {"format": "cards", "encoding": encoding, "first": label}
     delimiter = told.choices.get("delimiter", "").replace("tab", "\t") or delimiter_of(text)
     source: dict[str, Any] = {"format": "tsv", "encoding": encoding}
     starts = () if "delimiter" in told.choices else starts_of(text)
@@ -184,7 +193,13 @@ def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
     where = told.choices.get("records", list_in(found[0] if found else None, alone=len(found) < 2))
     if where:
         told.sure.append(f"objects are listed as {where!r}")
-    return {"format": "json"} | ({"records": where} if where else {})
+    source: dict[str, Any] = {"format": "json"} | ({"records": where} if where else {})
+    held: dict[str, Any] = at_path(found[0], where) if len(found) == 1 else {}
+    # Names of fields are no numbers of objects: {"height": {"value": 12, "unit": "cm"}, "width": ...}.
+    if is_keyed(held) and sum(named(key) is not None for key in held) < MOST_NAMED * len(held):
+        told.sure.append(f"each object stands behind its number, such as {next(iter(held))[:80]!r}")
+        source["keyed"] = True
+    return source
 
 
 @contextmanager
@@ -409,6 +424,9 @@ def objects_of(name: str, source: dict[str, Any], columns: list[Column], told: G
         else f"each part of an object has a row of its own, and {long.part!r} says which: they are gathered by "
         f"{long.object!r}, the object itself counts"
         if long.sides
+        else f"a row has several measurements, in numbered columns: {long.type!r} and its like say which, "
+        f"{long.value!r} and its like how much"
+        if any(one.type for one in long.again)
         else f"each measurement has a row of its own: {long.type!r} says which, {long.value!r} how much; they are "
         f"gathered by {long.object!r}"
     )

@@ -14,6 +14,7 @@ from unicodedata import category
 from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
 from pipeline.collection.guessing.names import named
+from pipeline.collection.sources.cards import LABELLED
 from pipeline.collection.sources.delimited import cut_at
 from pipeline.collection.sources.heads import is_of_units, joined_heads
 from pipeline.tables import table
@@ -170,6 +171,30 @@ def starts_of(text: str) -> tuple[int, ...]:
     head = lines[0]
     begun = [at for at in begun if at == 1 or (at <= len(head) and head[at - 1] != " " and head[at - 2] == " ")]
     return tuple(begun) if len(begun) >= _LEAST else ()
+
+
+_AGAIN, _OF_LINES = 2, 0.6
+"""How often each of three labels must come, and what share of the lines labels must begin (judgement)."""
+
+
+def first_label(text: str) -> str:
+    """Return the label with which each record begins of a text of labelled lines; "" of any other text.
+
+    Parameters
+    ----------
+    text : str
+        How the file begins.
+    """
+    lines = [line for line in text.lstrip("\ufeff").splitlines()[:-1] or text.splitlines() if line.strip()]
+    found = [match for line in lines if (match := LABELLED.fullmatch(line.rstrip())) is not None]
+    often = Counter(" ".join(match[1].split()) for match in found)
+    labels = [label for label, times in often.items() if times >= _AGAIN]
+    if len(labels) < _LEAST or sum(often[label] for label in labels) < _OF_LINES * len(lines):
+        return ""
+    known = {what.field for label in labels if (what := named(label)) is not None}
+    # A record begins with what comes most often and first, which is its number or its name.
+    most = max(often[label] for label in labels)
+    return next(label for label in labels if often[label] == most) if len(known) >= _LEAST else ""
 
 
 def first_lines(text: str, delimiter: str | tuple[int, ...], most: int) -> list[tuple[int, list[str]]]:

@@ -10,7 +10,7 @@ from pipeline.collection.display_words import says_away
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.names import DESCRIPTION, named
-from pipeline.collection.places import parted
+from pipeline.collection.places import LONGEST, ROOM, parted
 
 _PLACED = 0.5
 """Share of a column's texts that must begin as places do (judgement)."""
@@ -56,9 +56,9 @@ def _is_place(text: str) -> bool:
     shown = first is not None and first.field == "on_display" and ":" in text
     # 展厅一, 库房二: a word for a room, with its number behind it and no blank.
     room = any((what := named(text[:long])) is not None and what.field == "gallery" for long in _SIGNS_OF_ROOMS)
-    return (
-        room or shown or (first is not None and first.field == "gallery") or bool(parted(text).case) or says_away(text)
-    )
+    called = first is not None and first.field == "gallery"
+    spoken = len(text) <= LONGEST and ROOM.search(text) is not None
+    return room or shown or called or spoken or bool(parted(text).case) or says_away(text)
 
 
 def parting(columns: Sequence[Column], used: Iterable[Column], place: Column | None) -> Question | None:

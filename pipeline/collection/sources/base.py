@@ -39,12 +39,16 @@ class LongSide(BaseModel):
 
 
 class LongAgain(BaseModel):
-    """Columns that tell the same measurements once more, in a source in long form."""
+    """Further columns of measurements, in a source in long form."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
+    type: Name | None = Field(
+        default=None, description="The column that says what was measured; left out where it is that of the first ones."
+    )
     value: Name = Field(description="The column with the numbers.")
     unit: Name | None = Field(default=None, description="The column with their units.")
+    part: Name | None = Field(default=None, description="The column that says of which part.")
 
 
 class LongForm(BaseModel):
@@ -61,7 +65,8 @@ class LongForm(BaseModel):
     part: Name | None = Field(default=None, description="The column that says of which part, such as whole or frame.")
     again: tuple[LongAgain, ...] = Field(
         default=(),
-        description="Columns with the same measurements in other units: what contradicts the first ones is refused.",
+        description="Further columns: of other measurements, where a row has several (Measurement 2 type), or of the "
+        "same in other units, of which those that contradict the first ones are refused.",
     )
     separator: str = Field(
         default="",

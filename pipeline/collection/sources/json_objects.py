@@ -6,6 +6,7 @@ What columns they have, `nested` says. Numbers keep their characters.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -26,6 +27,12 @@ _PAGES = (
 )
 """Names of the list of objects on a page of an API."""
 
+KEY = "key"
+"""The column of what stands before an object, where objects are keyed."""
+
+_FEWEST = 2
+"""Objects, and names that most of them have, from which on they are keyed (judgement)."""
+
 _WRAPPERS = ("artObject", "_source", "attributes", "object", "record", "item", "node", "fields", "document", "objekt")
 """Names of one object on a page of its own, or of what a search engine found."""
 
@@ -38,6 +45,10 @@ class JsonSettings(MeasuredSettings):
         default="",
         description='Where a file lists its objects: names joined by points, such as items or hits.hits; "" where '
         "each value of the file is an object.",
+    )
+    keyed: bool = Field(
+        default=False,
+        description='Objects stand behind their numbers, {"1922.9": {...}, "1922.10": {...}}: the column "key" has it.',
     )
 
 
@@ -76,15 +87,17 @@ class Json(JsonSource):
         """
         settings = request.settings
         remedy = "say in the mapping where the objects are listed, [source] records, or export one object a line"
-        yield from object_rows(lambda: _objects(values, file, settings.records), file, settings.unit, remedy)
+        yield from object_rows(
+            lambda: _objects(values, file, settings.records, keyed=settings.keyed), file, settings.unit, remedy
+        )
 
 
-def _objects(values: Values, file: str, where: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
+def _objects(values: Values, file: str, where: str, *, keyed: bool) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Yield the objects, with the line where the value begins in which each stands."""
     for line, value in values():
-        found = value
-        for name in filter(None, where.split(".")):
-            found = found.get(name) if isinstance(found, dict) else None
+        found = at_path(value, where)
+        if keyed and isinstance(found, dict) and all(isinstance(one, dict) for one in found.values()):
+            found = [{KEY: key, **one} for key, one in found.items()]
         listed = list(_unnested(found)) if found is not None else []
         if found is None or any(not isinstance(one, dict) for one in listed):
             what = f"no list {where!r} of objects is there" if where else "no object, which has names and values"
@@ -137,6 +150,27 @@ def list_in(value: Any, *, alone: bool = True) -> str:
         path.append(within)
         value = value[within]
     return ".".join(path)
+
+
+def at_path(value: Any, where: str) -> Any:
+    """Return what stands at a path of names within a value; None where nothing does."""
+    for name in filter(None, where.split(".")):
+        value = value.get(name) if isinstance(value, dict) else None
+    return value
+
+
+def is_keyed(value: Any) -> bool:
+    """Say whether a value has objects behind their numbers: several that have names in common, and nothing else.
+
+    Parameters
+    ----------
+    value : object
+        Such as `{"1922.9": {"title": "Vase", "height": 12}, "1922.10": {"title": "Cup", "height": 7}}`.
+    """
+    if not isinstance(value, dict) or len(value) < _FEWEST or not all(isinstance(one, dict) for one in value.values()):
+        return False
+    often = Counter(name for one in value.values() for name in one)
+    return sum(2 * times >= len(value) for times in often.values()) >= _FEWEST
 
 
 def _is_list_of_objects(value: Any) -> bool:

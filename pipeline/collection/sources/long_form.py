@@ -83,7 +83,7 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
         ("part", long.part),
         ("called", long.called),
         *(("sides", side.column) for side in long.sides),
-        *(("again", name) for one in long.again for name in (one.value, one.unit)),
+        *(("again", name) for one in long.again for name in (one.type, one.value, one.unit, one.part)),
     )
     for key, name in keyed:
         if name is not None and name not in names:
@@ -101,7 +101,15 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
 
     part_at = place_of(long.part)
     first = (place_of(long.type), place_of(long.value), place_of(long.unit), part_at)
-    again = [(first[0], place_of(one.value), place_of(one.unit), part_at) for one in long.again]
+    again = [
+        (
+            first[0] if one.type is None else place_of(one.type),
+            place_of(one.value),
+            place_of(one.unit),
+            part_at if one.type is None else place_of(one.part),
+        )
+        for one in long.again
+    ]
     called_at = None if long.called is None else names.index(long.called)
     sides = [(names.index(side.column), side) for side in long.sides]
     objects: dict[str, _Gathered] = {}

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from pipeline.collection.sources.adlib import Adlib
 from pipeline.collection.sources.base import HEAD, FileSource, Source, SourceSettings
+from pipeline.collection.sources.cards import Cards
 from pipeline.collection.sources.database import Database
 from pipeline.collection.sources.delimited import Csv, Fixed, Tsv
 from pipeline.collection.sources.files import head_of
@@ -44,7 +45,21 @@ def _source(value: object) -> Source:
 
 SOURCES: Registry[Source] = Registry(
     "kouros.sources",
-    (Csv(), Tsv(), Fixed(), Xlsx(), Lido(), Adlib(), MuseumPlus(), LinkedArt(), Database(), Tables(), Json(), Xml()),
+    (
+        Csv(),
+        Tsv(),
+        Fixed(),
+        Cards(),
+        Xlsx(),
+        Lido(),
+        Adlib(),
+        MuseumPlus(),
+        LinkedArt(),
+        Database(),
+        Tables(),
+        Json(),
+        Xml(),
+    ),
     _source,
 )
 """All kinds of sources, in the order in which they are asked whether they recognise one."""
