@@ -17,7 +17,6 @@ from pipeline.collection.sources.files import head_of
 from pipeline.collection.sources.headings import under_headings
 from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import is_address, recognised, source_named
-from pipeline.collection.sources.sideways import turned
 
 
 @contextmanager
@@ -64,8 +63,6 @@ def open_source(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) 
     long = mapping.source.long
     with source.open(request) as opened:
         rows = opened.rows
-        if getattr(mapping.source, "sideways", False):
-            rows = turned(rows, opened.name)
         if getattr(mapping.source, "headings", False):
             rows = under_headings(rows, opened.name)
         yield replace(opened, rows=rows if long is None else gathered(rows, long, opened.name))

@@ -331,9 +331,16 @@ def internal(column: Column) -> bool:
     return what is not None and what.internal
 
 
+def _last(name: str) -> str:
+    """Return the letter below a word for sizes, "h" of "size.h"; else the name itself."""
+    above, point, last = name.rpartition(".")
+    sizes = named(above) if point and len(last) == 1 else None
+    return last if sizes is not None and sizes.field == TEXTS else name
+
+
 def _letters(columns: Sequence[Column], said: Mapping[int, ColumnMeaning | None]) -> list[tuple[Column, ColumnMeaning]]:
     """Return what single letters mean beside each other: L is a width beside H and P, a length beside H and B."""
-    short = {bare(c.name).strip(" .:"): c for c in columns if said[id(c)] is None and c.measured}
+    short = {_last(bare(c.name).strip(" .:")): c for c in columns if said[id(c)] is None and c.measured}
     short = {
         letter: column for letter, column in short.items() if (len(letter) == 1 and letter.isalpha()) or letter == "Ø"
     }

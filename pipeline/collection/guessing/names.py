@@ -434,6 +434,8 @@ def _forms(name: str) -> Iterator[str]:
             yield plain(path[0])  # the name of what: "ca_storage_locations.preferred_labels"
         yield plain(path[-1])
         yield plain(unit_in(path[-1])[0])
+        if "(" in path[-1]:
+            yield from _forms(path[-1])
     # "measurement_height", "ca_objects.dimensions.dimensions_height"
     words = plain(unit_in(path[-1])[0]).split()
     about = next((at for at, word in enumerate(words) if word not in _ABOUT), 0)

@@ -34,7 +34,7 @@ from pipeline.collection.opening import open_source
 from pipeline.collection.sources.files import head_of, unpacked, unreadable
 from pipeline.collection.sources.folders import Folder
 from pipeline.collection.sources.headings import HEADING, under_headings
-from pipeline.collection.sources.json_objects import at_path, is_keyed, list_in
+from pipeline.collection.sources.json_objects import at_path, is_keyed, list_in, table_of
 from pipeline.collection.sources.json_records import files_of as json_files
 from pipeline.collection.sources.json_records import read_values
 from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
@@ -198,7 +198,10 @@ def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
     # Names of fields are no numbers of objects: {"height": {"value": 12, "unit": "cm"}, "width": ...}.
     if is_keyed(held) and sum(named(key) is not None for key in held) < MOST_NAMED * len(held):
         told.sure.append(f"each object stands behind its number, such as {next(iter(held))[:80]!r}")
-        source["keyed"] = True
+        source["layout"] = "keyed"
+    elif table_of(held) is not None:
+        told.sure.append("the names of the columns and their cells stand in lists")
+        source["layout"] = "columns"
     return source
 
 

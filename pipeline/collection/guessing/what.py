@@ -10,7 +10,7 @@ from unicodedata import combining, normalize
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text, words_of
 from pipeline.collection.guessing.columns import Column
-from pipeline.collection.guessing.names import ARTIST, DESCRIPTION, TEXTS, named, plain
+from pipeline.collection.guessing.names import ARTIST, CALLED, DESCRIPTION, TEXTS, named, path_of, plain
 from pipeline.tables import table
 
 SAYING = ("object_name", "classification", "medium", "material")
@@ -63,6 +63,11 @@ def name_and_title(
         None where one column alone is of names, where there is a title, or where both are as long.
     """
     names = [one for one in able.get("object_name", ()) if one.filled][:2]
+    title = found.get("title")
+    if not names and title is not None and title.filled and not {"title", "object_name"} & chosen.keys():
+        # "name" beside "title".
+        called = next((one for one in able["title"] if one.filled and plain(path_of(one.name)[-1]) in CALLED), title)
+        return (called, title) if called is not title and _words(title) >= _MORE * _words(called) else None
     if len(names) < 2 or "title" in found or {"title", "object_name"} & chosen.keys():
         return None
     short, long = sorted(names, key=_words)

@@ -17,6 +17,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Request, SourceSettings
 from pipeline.collection.sources.heads import joined_heads
 from pipeline.collection.sources.rows import Row
+from pipeline.collection.sources.sideways import turned
 from pipeline.errors import InputError
 
 # In all but UTF-16 (Excel's "Unicode text") the line ends survive a broken byte, so that it spoils one row only.
@@ -315,6 +316,13 @@ class HeadedSettings(SourceSettings):
         description="Objects stand side by side: each column is one, and the first cell of each row names a field.",
     )
 
+    def straight(self, rows: Iterator[Row], file: str) -> Iterator[Row]:
+        """Return the rows of objects, turned where they stand side by side.
+
+        rows : the header first;  file : the source's name in messages
+        """
+        return turned(rows, file) if self.sideways else rows
+
 
 class CsvSettings(HeadedSettings):
     """How a CSV file is read."""
@@ -373,8 +381,10 @@ class Csv(FileSource):
         Row
             First the header.
         """
-        own = request.settings
-        return read_delimited(binary, file, own.delimiter, own.encoding, own.header_row or 1, own.header_rows or 1)
+        own: CsvSettings = request.settings
+        return own.straight(
+            read_delimited(binary, file, own.delimiter, own.encoding, own.header_row or 1, own.header_rows or 1), file
+        )
 
 
 class Fixed(Csv):
@@ -397,8 +407,10 @@ class Fixed(Csv):
         Row
             First the header.
         """
-        own = request.settings
-        return read_delimited(binary, file, own.starts, own.encoding, own.header_row or 1, own.header_rows or 1)
+        own: FixedSettings = request.settings
+        return own.straight(
+            read_delimited(binary, file, own.starts, own.encoding, own.header_row or 1, own.header_rows or 1), file
+        )
 
 
 class Tsv(Csv):
@@ -421,5 +433,7 @@ class Tsv(Csv):
         Row
             First the header.
         """
-        own = request.settings
-        return read_delimited(binary, file, "\t", own.encoding, own.header_row or 1, own.header_rows or 1)
+        own: TsvSettings = request.settings
+        return own.straight(
+            read_delimited(binary, file, "\t", own.encoding, own.header_row or 1, own.header_rows or 1), file
+        )
