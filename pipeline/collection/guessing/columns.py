@@ -380,7 +380,7 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
         In the order of the source.
     """
     taken = {id(column) for column in used}
-    free = [column for column in columns if id(column) not in taken and column.name != OTHER]
+    free = [c for c in columns if id(c) not in taken and c.name != OTHER and not c.of_machine]
     called = [c for c in free if (what := named(c.name)) is not None and what.field == TEXTS and c.sized > 0.2]
     words = [c for c in free if c.name.rpartition(".")[2] == IN_WORDS and c.filled]
     if called or words:

@@ -24,13 +24,13 @@ _KIND = {"mass": "weight"}
 FEWEST_SIDES, FEWEST_SEVERAL = 2, 2
 """Columns of sides, and objects with several rows, from which rows are taken for those of parts (judgement)."""
 APART = 0.8
-"""Share of these objects whose rows each must name another part, and of cells that must say as many things as others
-beside them (judgement)."""
+"""Share of these objects whose rows each must name another part (judgement)."""
 
 _FIGURES = re.compile(r"(?<!\d)\d{1,3}(?!\d)")
 
 _MOSTLY = 0.6
-"""Share of the texts of a column that must be kinds, units or numbers (judgement)."""
+"""Share of the texts of a column that must be kinds, units or numbers, and of cells that must say as many things as
+those beside them (judgement)."""
 
 VALUES = frozenset(
     {
@@ -172,7 +172,7 @@ def _share_of(column: Column, known: Callable[[str], object]) -> float:
 def _even(kinds: Sequence[Sequence[str]], values: Sequence[Sequence[str]]) -> bool:
     """Whether nearly all cells of two columns that say anything say as many things."""
     both = [(one, other) for one, other in zip(kinds, values, strict=True) if any(one) or any(other)]
-    return sum(len(one) == len(other) for one, other in both) >= APART * len(both)
+    return sum(len(one) == len(other) for one, other in both) >= _MOSTLY * len(both)
 
 
 def _unit_beside(value: Column, units: Sequence[Column], columns: Sequence[Column]) -> Column | None:
