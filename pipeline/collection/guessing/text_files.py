@@ -143,6 +143,8 @@ def delimiter_of(text: str) -> str:
 
 
 _RULE = re.compile(r"[-=_]{2,}")
+_WIDEST = 2000
+"""Characters of a line of a printed list."""
 _SEEN, _LEAST = 200, 3
 """Lines from which it is told where cells begin, and how many of them and of their columns there must be."""
 
@@ -158,7 +160,7 @@ def starts_of(text: str) -> tuple[int, ...]:
         How the file begins.
     """
     lines = [line.rstrip() for line in text.lstrip("\ufeff").splitlines()[:_SEEN] if line.strip()]
-    if len(lines) <= _LEAST or any("\t" in line for line in lines):
+    if len(lines) <= _LEAST or any("\t" in line or len(line) > _WIDEST for line in lines):
         return ()
     rule = next((line for line in lines if not line.strip(" -=_+|")), "")
     told = [found.start() + 1 for found in _RULE.finditer(rule)]
@@ -247,12 +249,18 @@ def is_sideways(rows: Sequence[tuple[int, list[str]]]) -> bool:
     first = [cells[0].strip() for _, cells in rows if cells and cells[0].strip()]
     if len(set(first)) < len(first) or len(first) < _FEWEST_FIELDS:
         return False
-    told = {meant.field for name in first if (meant := named(name)) is not None}
-    across = max(len({what.field for cell in cells if (what := named(cell)) is not None}) for _, cells in rows)
-    known = sum(named(name) is not None for name in first)
-    return "object_number" in told and len(told) >= _FEWEST_FIELDS > across and known >= _MOST_OF * len(first)
+    known = [meant.field for name in first if len(name) <= _LONGEST and (meant := named(name)) is not None]
+    if "object_number" not in known or len(set(known)) < _FEWEST_FIELDS or len(known) < _MOST_OF * len(first):
+        return False
+
+    def across(cells: Sequence[str]) -> int:
+        return len({what.field for cell in cells if len(cell) <= _LONGEST and (what := named(cell)) is not None})
+
+    return all(across(cells) < _FEWEST_FIELDS for _, cells in rows)
 
 
+_LONGEST = 80
+"""Characters of the name of a field."""
 _FEWEST_FIELDS, _MOST_OF = 3, 0.5
 """Fields that a first column must name, and what share of its texts must name some (judgement)."""
 
