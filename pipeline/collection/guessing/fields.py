@@ -239,8 +239,11 @@ class Fields:
             if name == "depth_m" and self.length is not None and entry is not None and "column" in entry:
                 self._or_length(entry, self.length)
                 used.append(self.length)
-            if entry is not None and entry.get("unit") == WRITTEN and "column" in entry:
-                used += self._going_on(name, column, entry)
+            more = goes_on_in(column, self.columns) if entry is not None and entry.get("unit") == WRITTEN else None
+            if entry is not None and more is not None and entry.pop("column", None):
+                entry["columns"], entry["first"] = [column.name, more.name], True
+                self.questions[:] = [question for question in self.questions if question.key != name]
+                used.append(more)
             if name == "medium" and self.medium:
                 entry = tomlkit.table()
                 entry["columns"], entry["separator"] = [one.name for one in self.medium], ", "
@@ -255,15 +258,6 @@ class Fields:
         entry["columns"], entry["first"] = [column.name, usual.name], True
         self.doubts.append(f"an object's place is {column.name!r}, and where that is empty {usual.name!r}")
         return entry
-
-    def _going_on(self, name: str, column: Column, entry: tomlkit.items.Table) -> list[Column]:
-        more = goes_on_in(column, self.columns)
-        if more is None:
-            return []
-        del entry["column"]
-        entry["columns"], entry["first"] = [column.name, more.name], True
-        self.questions[:] = [question for question in self.questions if question.key != name]
-        return [more]
 
     def _or_length(self, entry: tomlkit.items.Table, length: Column) -> None:
         depth = str(entry.pop("column"))
