@@ -9,7 +9,7 @@ from typing import Any
 
 import tomlkit
 
-from pipeline.collection.display_words import flag_of, says_away
+from pipeline.collection.display_words import says_away
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import (
     Column,
@@ -29,11 +29,11 @@ from pipeline.collection.guessing.fields import (
     flag_among,
     images_among,
     pictures_said,
-    tells_display,
 )
 from pipeline.collection.guessing.headings import place_by_heading
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named
 from pipeline.collection.guessing.orders import section_of
+from pipeline.collection.guessing.shown import place_of_shown, removed, words_of_display
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -44,7 +44,14 @@ from pipeline.collection.guessing.source import (
     workbook,
 )
 from pipeline.collection.guessing.taken import MOST_STORES, of_preset, said_of_stores
-from pipeline.collection.guessing.what import describing, in_place_of_title, name_and_title, named_by
+from pipeline.collection.guessing.what import (
+    describing,
+    in_place_of_title,
+    name_and_title,
+    named_by,
+    naming_among,
+    naming_the_rest,
+)
 from pipeline.collection.guessing.within import labels_within, parting, place_among
 from pipeline.collection.mapping import MAPPABLE, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
@@ -60,7 +67,7 @@ _SIDES = ("height_m", "width_m", "depth_m", "diameter_m")
 
 _NAMING = ("title", "object_name", "classification", "medium")
 
-_TABLES = ("csv", "tsv", "xlsx", "sql", "json")
+_TABLES = ("csv", "tsv", "fixed", "cards", "xlsx", "sql", "json")
 """Formats whose columns are the museum's own."""
 
 _FORMATS = {"lido": "lido", "adlib": "adlib", "museumplus_ria": "museumplus", "linked_art": "linked_art"}
@@ -171,22 +178,6 @@ def _check_choices(choices: Mapping[str, str]) -> None:
             )
 
 
-def _words_of_display(found: dict[str, Column], told: GuessNotes) -> None:
-    """Take a column for how objects are displayed only where it holds words; one of mounts, too, that holds such."""
-    column = found.get("displayed")
-    if column is not None and "displayed" not in told.choices and not tells_display(column):
-        del found["displayed"]
-        if "on_display" not in {*found, *told.choices} and any(
-            flag_of(t, display=True) is not None for t in column.filled
-        ):
-            # "Displayed?" is answered by yes and no.
-            found["on_display"] = column
-    mounts = found.get("support")
-    if "displayed" not in found and mounts is not None and "support" not in told.choices and tells_display(mounts):
-        found["displayed"] = found.pop("support")
-        told.doubts.append(f"column {mounts.name!r} is taken to say in words how objects are displayed or held")
-
-
 def _places_of_cases(found: dict[str, Column], told: GuessNotes) -> None:
     """Take a column of cases for the places too, where no column is of places and it names more than cases' signs."""
     cases = found.get("case")
@@ -213,6 +204,11 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         told.sure.append(
             f"{named_twice[0].name!r} names things and {named_twice[1].name!r} is their title: it has more words"
         )
+    if "title" not in told.choices and not any(key in found and found[key].filled for key in _NAMING):
+        saying = naming_among(columns, found.values())
+        if saying is not None:
+            found["title"] = saying
+            told.doubts.append(f"no column is called for names or titles: {saying.name!r} is taken, by what it holds")
     naming = named_by(able, found, told.choices)
     described = naming is not None and naming is not found.get("title")
     about = None if naming is None or described or "title" in told.choices else describing(able, naming)
@@ -247,13 +243,13 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         document["source"]["long"] = source["long"]
     document["museum"] = {"name": "Our museum"}
     if not {"gallery", "on_display"} & told.choices.keys() and "gallery" not in found:
-        _place_of_shown(found, told)
+        place_of_shown(found, told)
     if "gallery" not in found and "gallery" not in told.choices:
         placed = place_among(columns, found.values())
         if placed is not None:
             found["gallery"] = placed
             told.doubts.append(f"column {placed.name!r} is taken to tell where objects are, by what it holds")
-    _words_of_display(found, told)
+    words_of_display(found, told)
     if "on_display" not in found and "on_display" not in told.choices:
         flag = flag_among(columns, found.values())
         if flag is not None:
@@ -289,6 +285,16 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
             fields[field]["behind"] = labels
         # Sizes may stand in its other sentences.
         used = [column for column in used if column is not saying]
+    if naming_the_rest(found, told.choices):
+        fields["object_name"]["columns"] = [fields["object_name"].pop("column"), found["title"].name]
+        fields["object_name"]["first"] = True
+        told.doubts.append(
+            f"where {found['object_name'].name!r} names no thing, {found['title'].name!r} is taken to; --choose "
+            f"object_name={found['object_name'].name} leaves that"
+        )
+    gone = removed(columns, found, told)
+    if gone is not None:
+        fields["on_display"] = gone
     document["columns"] = fields
     _cases_in_places(fields, [column for column in (found.get("gallery"), usual) if column is not None], told)
     texts = texts_among(columns, used)
@@ -377,20 +383,6 @@ def _cases_in_places(fields: tomlkit.items.Table, places: Sequence[Column], told
         )
 
 
-def _place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:
-    """Take a column called "on view" for the place, where it names a gallery for what is on view, and else nothing."""
-    shown = found.get("on_display")
-    if shown is None or not shown.filled:
-        return
-    known = [flag_of(text, display=True) for text in shown.distinct]
-    if known.count(None) > 0.5 * len(known) and (len(shown.filled) < len(shown.values) or False in known):
-        found["gallery"] = found.pop("on_display")
-        told.doubts.append(
-            f"column {shown.name!r} is taken to name the place of what is on display, such as "
-            f"{shown.filled[0][:80]!r}; what has none is not on display"
-        )
-
-
 def _chosen(
     name: str, columns: Sequence[Column], able: Mapping[str, list[Column]], told: GuessNotes
 ) -> dict[str, Column]:
@@ -449,7 +441,8 @@ def _settle_number(
     if "object_number" in told.choices or not able or _repeated(able[0]) <= MOST_REPEATED or able[0].blanks:
         return
     fields = {id(column) for column in found.values()}
-    others = [column for column in columns if id(column) not in fields and column.numbering and _repeated(column) == 0]
+    others = [column for column in columns if id(column) not in fields and column.numbering]
+    others.sort(key=_repeated)
     other = next((column for column in (*able, *others) if _repeated(column) <= MOST_REPEATED), None)
     if other is not None:
         found["object_number"] = other

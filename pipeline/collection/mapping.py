@@ -420,7 +420,7 @@ def _several_fault(kind: str, units: Collection[str], column: ColumnMap) -> str:
     if column.first:
         return (
             ""
-            if kind in ("text", "number") and len(column.columns) > 1 and not column.units and column.unit != WRITTEN
+            if kind in ("text", "number") and len(column.columns) > 1 and not column.units
             else "first is for texts and numbers of columns"
         )
     if not units or len(column.columns) != len(column.units) or not set(column.units) <= set(units):

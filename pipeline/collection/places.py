@@ -17,16 +17,14 @@ _SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS."""
 
 
-_ROOM = re.compile(
+ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
     r"|salon|sala|salone|galleria|galería|galeria|zaal|\w*sal|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
     r"|ruang|phòng|القاعة|قاعة|تالار|אולם|\w*展示室[a-z\d]{0,3})(?!\w)",
     re.IGNORECASE,
 )
 """A room that is named without a number or a mark behind it: "Fossil room Case 2"."""
-_NUMBERED_ROOM = re.compile(
-    rf"(.*?(?:{_ROOM.pattern}\s?(?:no\.?|nr\.?|#|№)?\s?{_SIGN}|展示室))\s+(\S.*)", re.IGNORECASE
-)
+_NUMBERED_ROOM = re.compile(rf"(.*?(?:{ROOM.pattern}\s?(?:no\.?|nr\.?|#|№)?\s?{_SIGN}|展示室))\s+(\S.*)", re.IGNORECASE)
 """One with its number and more words behind: "Gallery 3 on plinth"."""
 
 
@@ -67,7 +65,7 @@ def parted(text: str) -> NamedPlace:
             room = cases.index(False)
             return NamedPlace(text[spans[room][0] :], text[: spans[room - 1][1]])
         found = inside.search(text) if len(spans) == 1 else None
-        if found and _ROOM.search(text[: found.start()]):
+        if found and ROOM.search(text[: found.start()]):
             return NamedPlace(text[: found.start()].rstrip(), text[found.start() :])
         return NamedPlace(text, text if len(spans) > 1 or numbered.match(text) else "")
     held = next((at for at, (start, end) in enumerate(spans) if at and _tells(text[start:end])), 0)

@@ -157,6 +157,8 @@ def test_each_kind_has_its_own_name_and_settings() -> None:
     assert [one.name for one in SOURCES.own] == [
         "csv",
         "tsv",
+        "fixed",
+        "cards",
         "xlsx",
         "lido",
         "adlib",

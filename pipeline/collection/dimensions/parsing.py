@@ -37,6 +37,16 @@ _LEGEND = re.compile(
 )
 """The same before numbers that joins part already: height/width 3 1/2 x 4 in."""
 
+_MOST_OF_ALL = r"(?:max(?:imum|imal\w*|\.)?|greatest|overall|total|máx(?:im[oa]|\.)?|massim[oa]|größte|hors tout)(?!\w)"
+_EXTREME = re.compile(_MOST_OF_ALL, re.IGNORECASE)
+_JOIN = re.compile(r"\s*[x×*]\s+")
+_QUALIFIED = re.compile(
+    rf"(?:{_MOST_OF_ALL} ?)?\b[^\W\d_]+\.?(?: ?[x×*] (?:{_MOST_OF_ALL} ?)?[^\W\d_]+\.?){{1,2}}(?=\s*:)", re.IGNORECASE
+)
+"""Sides that a legend names, each with what is said of it: "Max. Height x Max. Width x Max. Depth: 12 x 13 x 14"."""
+_TWICE = re.compile(rf"\(?\b([^\W\d_]{{3,12}})\s*:\s*(?={_MOST_OF_ALL}\s+\1\b)", re.IGNORECASE)
+"""A label before the same label: "height: overall height 81"."""
+
 _DASHED = re.compile(r"(?<![^\W_])([^\W\d_]{1,2})-(?=\d)")
 """A label that a dash parts from its number: H-7 W-24 L-68 cm."""
 _SENTENCE_END = re.compile(r"(?<=\d)\.(?=\s+[^\W\d_])")
@@ -100,7 +110,8 @@ def parse(
         raise InputError(f'decimal must be "." or ",", not {decimal!r}')
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
-    head = _undashed(_LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, text[:LONGEST])))
+    head = _TWICE.sub(_blank, _QUALIFIED.sub(_unqualified, text[:LONGEST]))
+    head = _undashed(_LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, head)))
     if prose:
         head = _SENTENCE_END.sub(";", head)
     decimal = _mark_of(head) or decimal
@@ -157,6 +168,19 @@ def _undashed(text: str) -> str:
     sides = [found[1].casefold() for found in _DASHED.finditer(text)]
     able = len(sides) > 1 and len(set(sides)) == len(sides) and _DASHED_SIDES.issuperset(sides)
     return _DASHED.sub(r"\1:", text) if able else text
+
+
+def _blank(found: re.Match[str]) -> str:
+    return " " * len(found[0])
+
+
+def _unqualified(found: re.Match[str]) -> str:
+    """Return a legend of sides without what is said of each, as many characters: "Max. Height x Max. Width"."""
+    bare = _EXTREME.sub(_blank, found[0])
+    words = [word.strip(" .").casefold() for word in _JOIN.split(bare)]
+    known = meanings()
+    sides = [known.get(word, ("", ""))[0] == "dimension" or word in label_words() for word in words]
+    return bare if all(sides) else found[0]
 
 
 def _with_joins(found: re.Match[str]) -> str:

@@ -7,6 +7,7 @@ import re
 from ast import literal_eval
 from collections.abc import Iterator, Mapping
 from functools import cache
+from html import unescape
 from typing import Any
 
 from pipeline.collection.dimensions.lexicon import unit_words
@@ -16,6 +17,7 @@ LONGEST = 20_000
 DEEPEST = 6
 """Levels of lists and objects in one another that are looked into."""
 
+_ENTITY = re.compile(r"&(?:#\d{1,6}|#x[\da-f]{1,5}|[a-z]{2,8}\d{0,2});", re.IGNORECASE | re.ASCII)
 _OPENS = re.compile(r"\s*[\[{]\s*[\[{\"']")
 _LISTED = re.compile(r"\s*\[\s*[{\"'].*[}\"']\s*\]\s*\Z", re.DOTALL)
 _FORM = 2
@@ -53,6 +55,7 @@ def plain_text(text: str) -> str:
     """
     if len(text) > LONGEST:
         return text
+    text = _ENTITY.sub(_unescaped, text)
     if not _OPENS.match(text):
         return _filled_in(text)
     found = _parsed(text.strip())
@@ -97,11 +100,19 @@ def words_of(text: str) -> str:
     str
         "painting; icon", each once; the text itself where it is no such cell, or holds other things than words.
     """
-    if len(text) > LONGEST or not _LISTED.match(text):
+    if len(text) > LONGEST:
+        return text
+    text = _ENTITY.sub(_unescaped, text)
+    if not _LISTED.match(text):
         return text
     found = _parsed(text.strip())
     words = [] if found is None else list(_words(found))
     return text if not words or None in words else "; ".join(dict.fromkeys(filter(None, words)))
+
+
+def _unescaped(found: re.Match[str]) -> str:
+    """Return the sign that a web page writes so: 67&quot; is 67\"."""
+    return unescape(found[0])
 
 
 def _words(of: Any) -> Iterator[str | None]:

@@ -26,7 +26,7 @@ from pipeline.collection.guessing.names import (
 )
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
-from pipeline.collection.sources.measurement_terms import kind_of, unit_of
+from pipeline.collection.sources.measurement_terms import kind_within, unit_of
 from pipeline.collection.sources.measurements import IN_WORDS, OTHER
 from pipeline.errors import InputError
 
@@ -34,8 +34,8 @@ NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
 _SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d|\d\s*[×*]\s*\d", re.DOTALL)
-_BOTH = 0.05
-"""How many objects with length and depth there may be for each that has a length alone (judgement)."""
+BOTH = 0.05
+"""How many objects with both of two sizes there may be for each that has one alone (judgement)."""
 
 _NAMED = ("height", "width", "depth", "diameter", "length")
 
@@ -47,6 +47,13 @@ FEWEST_TOLD = 3
 
 _LONGEST = 40
 """Characters up to which a text is rather the number of an object than a sentence (judgement)."""
+
+_OF_MACHINE = re.compile(
+    r"(?:https?|oai|urn|info|hdl):\S+$|[0-9a-f]{8}(?:-[0-9a-f]{4}){3}-[0-9a-f]{12}$", re.IGNORECASE
+)
+_MOSTLY = 0.9
+"""Share of the texts of a column that must be of programs (judgement)."""
+_IN_WORDS = frozenset(("title", "object_name", "classification", "medium", "gallery", DESCRIPTION))
 
 _SOME = 200
 """Cells from which it is told what a column holds."""
@@ -127,7 +134,7 @@ class Column:
     @cached_property
     def kinds(self) -> float:
         """Share of its texts that name a kind of measurement."""
-        return _share(self.filled, kind_of)
+        return _share(self.filled, kind_within)
 
     @cached_property
     def units(self) -> float:
@@ -151,6 +158,12 @@ class Column:
     def length(self) -> float:
         """Characters of its texts in the middle."""
         return median(map(len, self.filled)) if self.filled else 0.0
+
+    @cached_property
+    def of_machine(self) -> bool:
+        """Whether most of its texts are addresses, or numbers by which only programs know an object."""
+        some = self.filled[:_SOME]
+        return bool(some) and sum(bool(_OF_MACHINE.match(text)) for text in some) > _MOSTLY * len(some)
 
     @property
     def prose(self) -> bool:
@@ -221,7 +234,8 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
         what = said[id(column)]
         # A column called "media" may hold pictures, or their numbers.
         pictures = what is not None and what.field == "medium" and (column.numeric or column.pictured > 0.5)
-        if what is not None and not pictures:
+        # An address names nothing in words.
+        if what is not None and not pictures and not (what.field in _IN_WORDS and column.of_machine):
             found.setdefault(what.field, []).append((what, column))
     out: dict[str, list[Column]] = {}
     for name, able in found.items():
@@ -237,6 +251,7 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
                 key=lambda pair: (
                     2 * len(pair[1].filled) <= most and most > 0,
                     pair[1].says_one,
+                    name == "object_number" and pair[1].of_machine,
                     pair[0].internal,
                     pair[0].rank,
                     is_code(pair[1].name),
@@ -259,12 +274,12 @@ def length_beside(columns: Sequence[Column], depth: Column | None) -> Column | N
     column = next(said, None)
     if column is None or depth is None or unit_in(column.name)[1] != unit_in(depth.name)[1]:
         return None
-    pairs = [(bool(_told(one)), bool(_told(other))) for one, other in zip(column.values, depth.values, strict=False)]
+    pairs = [(bool(tells(one)), bool(tells(other))) for one, other in zip(column.values, depth.values, strict=False)]
     alone, both = pairs.count((True, False)), pairs.count((True, True))
-    return column if alone and both <= _BOTH * alone else None
+    return column if alone and both <= BOTH * alone else None
 
 
-def _told(text: str) -> bool:
+def tells(text: str) -> bool:
     """Whether a cell says a number other than nought."""
     return bool(text.strip(" 0.,"))
 
@@ -316,9 +331,16 @@ def internal(column: Column) -> bool:
     return what is not None and what.internal
 
 
+def _last(name: str) -> str:
+    """Return the letter below a word for sizes, "h" of "size.h"; else the name itself."""
+    above, point, last = name.rpartition(".")
+    sizes = named(above) if point and len(last) == 1 else None
+    return last if sizes is not None and sizes.field == TEXTS else name
+
+
 def _letters(columns: Sequence[Column], said: Mapping[int, ColumnMeaning | None]) -> list[tuple[Column, ColumnMeaning]]:
     """Return what single letters mean beside each other: L is a width beside H and P, a length beside H and B."""
-    short = {bare(c.name).strip(" .:"): c for c in columns if said[id(c)] is None and c.measured}
+    short = {_last(bare(c.name).strip(" .:")): c for c in columns if said[id(c)] is None and c.measured}
     short = {
         letter: column for letter, column in short.items() if (len(letter) == 1 and letter.isalpha()) or letter == "Ø"
     }
@@ -358,7 +380,7 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
         In the order of the source.
     """
     taken = {id(column) for column in used}
-    free = [column for column in columns if id(column) not in taken and column.name != OTHER]
+    free = [c for c in columns if id(c) not in taken and c.name != OTHER and not c.of_machine]
     called = [c for c in free if (what := named(c.name)) is not None and what.field == TEXTS and c.sized > 0.2]
     words = [c for c in free if c.name.rpartition(".")[2] == IN_WORDS and c.filled]
     if called or words:
@@ -428,7 +450,7 @@ def sentences_of_dimensions(columns: Sequence[Column], told: Sequence[Column], u
     able = [column for column in columns if id(column) not in taken and (column.prose or _describes(column))]
     if not told or not able:
         return None
-    bare = [not any(_told(cell) for cell in cells) for cells in zip(*(one.values for one in told), strict=True)]
+    bare = [not any(tells(cell) for cell in cells) for cells in zip(*(one.values for one in told), strict=True)]
     often = [
         (sum(_tells_sides(text) for text, alone in zip(column.values, bare, strict=True) if alone), column)
         for column in able

@@ -176,6 +176,10 @@ def _references(table: DatabaseTable, other: DatabaseTable) -> Iterator[tuple[st
         for column in table.columns:
             if (column,) == table.key or column in table.refers:
                 continue
+            # In a Darwin Core archive the rows of an extension have the number of their record so.
+            if key.casefold() == "id" and column.casefold() in ("id", "coreid"):
+                yield column, key
+                continue
             words = plain(column).split()
             ends = plain(key).split()
             if words[-len(ends) :] == ends and ends != ["id"]:  # PrimaryUnitID -> UnitID

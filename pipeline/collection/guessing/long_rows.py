@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Callable, Iterable, Sequence
 
 from pipeline.collection.guessing.columns import NUMBER, Column, candidates
 from pipeline.collection.guessing.names import named, plain, unit_in
-from pipeline.collection.sources.base import LongForm, LongSide
-from pipeline.collection.sources.measurement_terms import kind_of, part_of, plain_word, unit_of
+from pipeline.collection.sources.base import LongAgain, LongForm, LongSide
+from pipeline.collection.sources.measurement_terms import kind_of, kind_within, part_of, plain_word, unit_of
+from pipeline.collection.sources.measurements import FRACTION
 
 _LETTERS = frozenset(("h", "b", "l", "t", "d", "w", "p", "a", "dm", "dia", "diam", "ø", "g", "gew", "wt", "kg"))
 """Letters by which kinds are told, in any language; the words beside them say which is which."""
@@ -23,6 +25,12 @@ FEWEST_SIDES, FEWEST_SEVERAL = 2, 2
 """Columns of sides, and objects with several rows, from which rows are taken for those of parts (judgement)."""
 APART = 0.8
 """Share of these objects whose rows each must name another part (judgement)."""
+
+_FIGURES = re.compile(r"(?<!\d)\d{1,3}(?!\d)")
+
+_MOSTLY = 0.6
+"""Share of the texts of a column that must be kinds, units or numbers, and of cells that must say as many things as
+those beside them (judgement)."""
 
 VALUES = frozenset(
     {
@@ -50,7 +58,7 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
     -------
     LongForm or None
     """
-    within = _within(columns) or _of_parts(columns)
+    within = _numbered(columns) or _within(columns) or _of_parts(columns)
     if within is not None:
         return within
     types = [c for c in columns if (c.kinds >= 0.6 or _lettered(c)) and len(c.distinct) > 1]
@@ -93,25 +101,89 @@ def _within(columns: Sequence[Column]) -> LongForm | None:
     for separator in _SEPARATORS:
         apart = [(c, [text.split(separator) for text in c.values[:200]]) for c in columns]
         apart = [(c, pieces) for c, pieces in apart if any(len(one) > 1 for one in pieces)]
-        found: dict[str, Column] = {}
+        found: dict[str, list[tuple[Column, list[list[str]]]]] = {"type": [], "unit": [], "value": []}
         for column, pieces in apart:
             some = [piece.strip() for one in pieces for piece in one if piece.strip()]
-            for name, tells in (("type", kind_of), ("unit", unit_of), ("value", _number)):
+            for name, tells in (("type", kind_within), ("unit", unit_of), ("value", _number)):
                 # Blanks between separators name nothing: " | ".
-                if some and name not in found and sum(tells(text) is not None for text in some) >= 0.6 * len(some):
-                    found[name] = column
+                if some and sum(tells(text) is not None for text in some) >= _MOSTLY * len(some):
+                    found[name].append((column, pieces))
                     break
         objects = [c for c in candidates(columns).get("object_number", ()) if c.filled]
-        if {"type", "value"} <= found.keys() and objects:
-            unit = found.get("unit")
-            return LongForm(
-                object=objects[0].name,
-                type=found["type"].name,
-                value=found["value"].name,
-                unit=None if unit is None else unit.name,
-                separator=separator,
-            )
+        for kind, kinds in found["type"] if objects else ():
+            values = [column for column, pieces in found["value"] if _even(kinds, pieces)]
+            # Decimals before fractions.
+            values.sort(key=lambda one: sum("/" in text for text in one.filled))
+            units = [column for column, _ in found["unit"]]
+            pairs = [(value, _unit_beside(value, units, columns)) for value in values]
+            if pairs:
+                told = [(value.name, None if unit is None else unit.name) for value, unit in pairs]
+                return LongForm(
+                    object=objects[0].name,
+                    type=kind.name,
+                    value=told[0][0],
+                    unit=told[0][1],
+                    separator=separator,
+                    again=tuple(LongAgain(value=value, unit=unit) for value, unit in told[1:] if unit != told[0][1]),
+                )
     return None
+
+
+def _numbered(columns: Sequence[Column]) -> LongForm | None:
+    """Return how several measurements of a row are read, each in columns of its number: "Measurement 2 type"."""
+    found: dict[int, dict[str, Column]] = {}
+    for column in columns:
+        for place in _FIGURES.finditer(column.name):
+            role = f"{column.name[: place.start()]}#{column.name[place.end() :]}"
+            found.setdefault(int(place[0]), {})[role] = column
+    pooled: dict[str, list[str]] = {}
+    for of in found.values():
+        for role, column in of.items():
+            pooled.setdefault(role, []).extend(column.filled)
+    whole = {
+        role: Column(role, texts) for role, texts in pooled.items() if sum(role in of for of in found.values()) > 1
+    }
+    kinds = [role for role, one in whole.items() if one.kinds >= _MOSTLY and len(one.distinct) > 1]
+    numbers = [role for role, one in whole.items() if one.numeric or _share_of(one, _number) >= _MOSTLY]
+    objects = [c for c in candidates(columns).get("object_number", ()) if c.filled]
+    if not (kinds and numbers and objects):
+        return None
+    units = [role for role, one in whole.items() if one.units >= _MOSTLY and role not in kinds]
+    parts = [role for role, one in whole.items() if role not in (*kinds, *numbers, *units) and _parts(one) >= 0.5]
+    kind, number = kinds[0], min(numbers, key=lambda role: len(set(plain(role).split()) ^ set(plain(kinds[0]).split())))
+
+    def called(of: dict[str, Column], roles: list[str]) -> str | None:
+        return next((of[role].name for role in roles if role in of), None)
+
+    rows = [of for _, of in sorted(found.items()) if kind in of and number in of]
+    if len(rows) < FEWEST_SEVERAL:
+        return None
+    first, *others = (
+        {"type": of[kind].name, "value": of[number].name, "unit": called(of, units), "part": called(of, parts)}
+        for of in rows
+    )
+    return LongForm(object=objects[0].name, again=tuple(LongAgain(**one) for one in others), **first)
+
+
+def _share_of(column: Column, known: Callable[[str], object]) -> float:
+    return sum(known(text) is not None for text in column.filled) / len(column.filled) if column.filled else 0.0
+
+
+def _even(kinds: Sequence[Sequence[str]], values: Sequence[Sequence[str]]) -> bool:
+    """Whether nearly all cells of two columns that say anything say as many things."""
+    both = [(one, other) for one, other in zip(kinds, values, strict=True) if any(one) or any(other)]
+    return sum(len(one) == len(other) for one, other in both) >= _MOSTLY * len(both)
+
+
+def _unit_beside(value: Column, units: Sequence[Column], columns: Sequence[Column]) -> Column | None:
+    """Return the column with the units of one of numbers: the one whose name is most like its own, or the nearest."""
+    places = {id(column): at for at, column in enumerate(columns)}
+    words = set(plain(value.name).split())
+    return min(
+        units,
+        key=lambda unit: (len(words ^ set(plain(unit.name).split())), abs(places[id(unit)] - places[id(value)])),
+        default=None,
+    )
 
 
 def _of_parts(columns: Sequence[Column]) -> LongForm | None:
@@ -161,7 +233,7 @@ def _differ(column: Column, rows: Sequence[int]) -> bool:
 
 
 def _number(text: str) -> str | None:
-    return text if NUMBER.fullmatch(text) else None
+    return text if NUMBER.fullmatch(text) or FRACTION.fullmatch(text) else None
 
 
 def _parts(column: Column) -> float:

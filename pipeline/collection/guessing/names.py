@@ -56,6 +56,9 @@ _TYPED = re.compile(r"(?<=[a-z])(?:Txt|Clb|Vrt|Num|Voc|Lnu)$")
 _VALUE = re.compile(r"\.@(?:value|none|[a-z]{2})$")
 """Behind a name in linked data (JSON-LD): "dcterms:title.@value"."""
 _LABELS = re.compile(r"preferred labels?")
+_LABELLED = re.compile(r"(\w*[a-z])Label")
+_SIGNS = re.compile(r"[\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7af]{3,}")
+"""A name without blanks between its words, the last of which says what it is: 具体质量, a mass."""
 _REFERENCE = re.compile(r"(?<=[a-z])(?:Ref|Grp|Tab)$")
 """Behind the name of what is told by another table."""
 _SIDE = re.compile(r"([^(（\[]+)[(（\[]([^)）\]]+)[)）\]]")
@@ -420,6 +423,10 @@ def _forms(name: str) -> Iterator[str]:
         halves.sort(key=lambda half: _says(half) == DESCRIPTION)
         titled = _says(halves[0]) not in (None, DESCRIPTION) and _says(halves[-1]) == DESCRIPTION
         yield from map(plain, reversed(halves) if between and not titled else halves)
+    # "heightUnitLabel": an answer to SPARQL has words for what is an address without "Label".
+    labelled = _LABELLED.fullmatch(name)
+    if labelled is not None:
+        yield plain(labelled[1])
     # A path of names: what its last one says, "_currentLocation__onDisplay", "location.onView".
     path = path_of(name)
     if path[-1] != name:
@@ -427,6 +434,8 @@ def _forms(name: str) -> Iterator[str]:
             yield plain(path[0])  # the name of what: "ca_storage_locations.preferred_labels"
         yield plain(path[-1])
         yield plain(unit_in(path[-1])[0])
+        if "(" in path[-1]:
+            yield from _forms(path[-1])
     # "measurement_height", "ca_objects.dimensions.dimensions_height"
     words = plain(unit_in(path[-1])[0]).split()
     about = next((at for at, word in enumerate(words) if word not in _ABOUT), 0)
@@ -466,6 +475,10 @@ def _forms(name: str) -> Iterator[str]:
 def _within(name: str) -> ColumnMeaning | None:
     """Return what the last or the first words of a name say: "Akt. Standort"; of numbers, places and materials only."""
     words = plain(unit_in(name)[0]).split()
+    if len(words) == 1 and _SIGNS.fullmatch(words[0]):
+        ends = (_names().get(words[0][at:]) for at in range(1, len(words[0]) - 1))
+        last = next(filter(None, ends), None)
+        return None if last is None or last.internal else ColumnMeaning(last.field, _WEAK + last.rank)
     if _FORMER & set(words) or words[-1:] == ["id"] or words[:1] == ["is"] or words[:1] == ["has"]:
         # "is_gallery" is answered by yes or no.
         return None

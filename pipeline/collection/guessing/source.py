@@ -16,7 +16,17 @@ from pipeline.collection.guessing.columns import Column, candidates, columns_of
 from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.headings import has_headings
 from pipeline.collection.guessing.long_rows import long_form_of
-from pipeline.collection.guessing.text_files import LOOKED_AT, delimiter_of, encoding_of, first_lines, table_head
+from pipeline.collection.guessing.names import named
+from pipeline.collection.guessing.text_files import (
+    LOOKED_AT,
+    delimiter_of,
+    encoding_of,
+    first_label,
+    first_lines,
+    is_sideways,
+    starts_of,
+    table_head,
+)
 from pipeline.collection.limits import STANDARD
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.mapping import load_mapping
@@ -24,7 +34,7 @@ from pipeline.collection.opening import open_source
 from pipeline.collection.sources.files import head_of, unpacked, unreadable
 from pipeline.collection.sources.folders import Folder
 from pipeline.collection.sources.headings import HEADING, under_headings
-from pipeline.collection.sources.json_objects import list_in
+from pipeline.collection.sources.json_objects import at_path, is_keyed, list_in, table_of
 from pipeline.collection.sources.json_records import files_of as json_files
 from pipeline.collection.sources.json_records import read_values
 from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
@@ -38,8 +48,11 @@ from pipeline.collection.sources.xml_records import XML_FILES
 READ = 2000
 """Rows that the guess is made from."""
 
-_HEADED = ("csv", "tsv", "xlsx")
+_HEADED = ("csv", "tsv", "fixed", "xlsx")
 """Formats of tables that people write, with headings between their rows perhaps."""
+
+MOST_NAMED = 0.2
+"""Share of the names before objects that may be those of fields (judgement)."""
 
 SNIFFED = 1 << 18
 """Bytes from which encoding and delimiter are told."""
@@ -124,8 +137,20 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         text = head.decode(encoding, "ignore")
     except LookupError as problem:
         raise CollectionError(f"--choose encoding: there is no encoding {encoding!r}; try utf-8 or cp1252") from problem
+    label = "" if {"delimiter", "header_row"} & told.choices.keys() else first_label(text)
+    if label:
+        told.sure.append(f"{encoding}, records of labelled lines, each from {label!r} on")
+        return {"format": "cards", "encoding": encoding, "first": label}
     delimiter = told.choices.get("delimiter", "").replace("tab", "\t") or delimiter_of(text)
     source: dict[str, Any] = {"format": "tsv", "encoding": encoding}
+    starts = () if "delimiter" in told.choices else starts_of(text)
+    if starts:
+        rows = first_lines(text, starts, LOOKED_AT + 60)
+        if table_head(rows).known > table_head(first_lines(text, delimiter, LOOKED_AT + 60)).known:
+            source |= {"format": "fixed", "starts": list(starts)}
+            told.sure.append(f"{encoding}, cells below each other, from characters {', '.join(map(str, starts))} on")
+            _set_head(source, rows, told)
+            return source
     if delimiter != "\t":
         source = {"format": "csv", "encoding": encoding, "delimiter": delimiter}
     told.sure.append(f"{encoding}, cells parted by {delimiter!r}")
@@ -168,7 +193,16 @@ def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
     where = told.choices.get("records", list_in(found[0] if found else None, alone=len(found) < 2))
     if where:
         told.sure.append(f"objects are listed as {where!r}")
-    return {"format": "json"} | ({"records": where} if where else {})
+    source: dict[str, Any] = {"format": "json"} | ({"records": where} if where else {})
+    held: dict[str, Any] = at_path(found[0], where) if len(found) == 1 else {}
+    # Names of fields are no numbers of objects: {"height": {"value": 12, "unit": "cm"}, "width": ...}.
+    if is_keyed(held) and sum(named(key) is not None for key in held) < MOST_NAMED * len(held):
+        told.sure.append(f"each object stands behind its number, such as {next(iter(held))[:80]!r}")
+        source["layout"] = "keyed"
+    elif table_of(held) is not None:
+        told.sure.append("the names of the columns and their cells stand in lists")
+        source["layout"] = "columns"
+    return source
 
 
 @contextmanager
@@ -219,6 +253,11 @@ _AGAIN = 0.1
 
 def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: GuessNotes) -> None:
     """Say where the columns are named, where that is not the first row alone."""
+    several = next((at for at, (_, cells) in enumerate(rows) if sum(bool(cell.strip()) for cell in cells) > 1), 0)
+    if rows and "header_row" not in told.choices and is_sideways(rows[several:]):
+        source |= {"sideways": True} | ({"header_row": rows[several][0]} if several else {})
+        told.sure.append("objects stand side by side: each column is one, and the first cell of each row names a field")
+        return
     head = table_head(rows)
     row, many = head.row, head.rows
     try:
@@ -388,6 +427,9 @@ def objects_of(name: str, source: dict[str, Any], columns: list[Column], told: G
         else f"each part of an object has a row of its own, and {long.part!r} says which: they are gathered by "
         f"{long.object!r}, the object itself counts"
         if long.sides
+        else f"a row has several measurements, in numbered columns: {long.type!r} and its like say which, "
+        f"{long.value!r} and its like how much"
+        if any(one.type for one in long.again)
         else f"each measurement has a row of its own: {long.type!r} says which, {long.value!r} how much; they are "
         f"gathered by {long.object!r}"
     )

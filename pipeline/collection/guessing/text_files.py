@@ -13,6 +13,9 @@ from unicodedata import category
 
 from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
+from pipeline.collection.guessing.names import named
+from pipeline.collection.sources.cards import LABELLED
+from pipeline.collection.sources.delimited import cut_at
 from pipeline.collection.sources.heads import is_of_units, joined_heads
 from pipeline.tables import table
 
@@ -139,15 +142,72 @@ def delimiter_of(text: str) -> str:
     return max(_DELIMITERS, key=regular)
 
 
-def first_lines(text: str, delimiter: str, most: int) -> list[tuple[int, list[str]]]:
+_RULE = re.compile(r"[-=_]{2,}")
+_WIDEST = 2000
+"""Characters of a line of a printed list."""
+_SEEN, _LEAST = 200, 3
+"""Lines from which it is told where cells begin, and how many of them and of their columns there must be."""
+
+
+def starts_of(text: str) -> tuple[int, ...]:
+    """Return at which characters of each line, from 1 on, the cells of a printed list begin; () of any other text.
+
+    A line of dashes below the head tells it, or else the places that are blank in all lines.
+
+    Parameters
+    ----------
+    text : str
+        How the file begins.
+    """
+    lines = [line.rstrip() for line in text.lstrip("\ufeff").splitlines()[:_SEEN] if line.strip()]
+    if len(lines) <= _LEAST or any("\t" in line or len(line) > _WIDEST for line in lines):
+        return ()
+    rule = next((line for line in lines if not line.strip(" -=_+|")), "")
+    told = [found.start() + 1 for found in _RULE.finditer(rule)]
+    if len(told) >= _LEAST:
+        return (1, *told[1:])
+    width = max(map(len, lines))
+    filled = [sum(at < len(line) and line[at] != " " for line in lines) for at in range(width)]
+    begun = [1, *(at + 1 for at in range(1, width) if filled[at] and not filled[at - 1])]
+    # What stands in one line alone, or beyond a short head, is a longer text and no column.
+    head = lines[0]
+    begun = [at for at in begun if at == 1 or (at <= len(head) and head[at - 1] != " " and head[at - 2] == " ")]
+    return tuple(begun) if len(begun) >= _LEAST else ()
+
+
+_AGAIN, _OF_LINES = 2, 0.6
+"""How often each of three labels must come, and what share of the lines labels must begin (judgement)."""
+
+
+def first_label(text: str) -> str:
+    """Return the label with which each record begins of a text of labelled lines; "" of any other text.
+
+    Parameters
+    ----------
+    text : str
+        How the file begins.
+    """
+    lines = [line for line in text.lstrip("\ufeff").splitlines()[:-1] or text.splitlines() if line.strip()]
+    found = [match for line in lines if (match := LABELLED.fullmatch(line.rstrip())) is not None]
+    often = Counter(" ".join(match[1].split()) for match in found)
+    labels = [label for label, times in often.items() if times >= _AGAIN]
+    if len(labels) < _LEAST or sum(often[label] for label in labels) < _OF_LINES * len(lines):
+        return ""
+    known = {what.field for label in labels if (what := named(label)) is not None}
+    # A record begins with what comes most often and first, which is its number or its name.
+    most = max(often[label] for label in labels)
+    return next(label for label in labels if often[label] == most) if len(known) >= _LEAST else ""
+
+
+def first_lines(text: str, delimiter: str | tuple[int, ...], most: int) -> list[tuple[int, list[str]]]:
     """Return the first rows of a text that are not blank, with the line where each begins.
 
     Parameters
     ----------
     text : str
         How the file begins.
-    delimiter : str
-        Between two cells.
+    delimiter : str or tuple of int
+        Between two cells, or where cells begin.
     most : int
         Rows.
 
@@ -156,7 +216,11 @@ def first_lines(text: str, delimiter: str, most: int) -> list[tuple[int, list[st
     list of (int, list of str)
         Until one that cannot be read.
     """
-    reader = csv.reader(text.lstrip("\ufeff").splitlines(keepends=True), delimiter=delimiter)
+    lines = text.lstrip("\ufeff").splitlines(keepends=True)
+    if not isinstance(delimiter, str):
+        cut = ((number, cut_at(delimiter, line)) for number, line in enumerate(lines, start=1))
+        return list(islice(((number, cells) for number, cells in cut if any(cells)), most))
+    reader = csv.reader(lines, delimiter=delimiter)
     out = []
     before = 0
     try:
@@ -170,6 +234,35 @@ def first_lines(text: str, delimiter: str, most: int) -> list[tuple[int, list[st
 
 
 _DIGITS = re.compile(r"\d+")
+
+
+def is_sideways(rows: Sequence[tuple[int, list[str]]]) -> bool:
+    """Say whether a table has its fields below each other and its objects side by side.
+
+    That is where its first column names the objects' numbers and other fields, each once, and no row does.
+
+    Parameters
+    ----------
+    rows : sequence of (int, list of str)
+        As of `table_head`.
+    """
+    first = [cells[0].strip() for _, cells in rows if cells and cells[0].strip()]
+    if len(set(first)) < len(first) or len(first) < _FEWEST_FIELDS:
+        return False
+    known = [meant.field for name in first if len(name) <= _LONGEST and (meant := named(name)) is not None]
+    if "object_number" not in known or len(set(known)) < _FEWEST_FIELDS or len(known) < _MOST_OF * len(first):
+        return False
+
+    def across(cells: Sequence[str]) -> int:
+        return len({what.field for cell in cells if len(cell) <= _LONGEST and (what := named(cell)) is not None})
+
+    return all(across(cells) < _FEWEST_FIELDS for _, cells in rows)
+
+
+_LONGEST = 80
+"""Characters of the name of a field."""
+_FEWEST_FIELDS, _MOST_OF = 3, 0.5
+"""Fields that a first column must name, and what share of its texts must name some (judgement)."""
 
 
 @dataclass(frozen=True)

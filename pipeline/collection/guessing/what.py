@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from unicodedata import combining, normalize
 
 from pipeline.collection.dimensions import parse
-from pipeline.collection.dimensions.structured import plain_text
+from pipeline.collection.dimensions.structured import plain_text, words_of
 from pipeline.collection.guessing.columns import Column
-from pipeline.collection.guessing.names import ARTIST, DESCRIPTION, TEXTS, plain
+from pipeline.collection.guessing.names import ARTIST, CALLED, DESCRIPTION, TEXTS, named, path_of, plain
 from pipeline.tables import table
 
 SAYING = ("object_name", "classification", "medium", "material")
@@ -31,8 +31,17 @@ _FACE = 2
 _MORE = 1.25
 """How many times more words titles have than names (judgement)."""
 
-_HEAD = re.compile(r"[,;:(\u2013]|\s-\s")
+_HEAD = re.compile(
+    r"[,;:(\u2013]|\s-\s|(?<=\w)\s+(?:with|without|for|from|by|in|showing|made|decorated|painted|mit|ohne|aus|für|avec|sans"
+    r"|pour|con|senza|per|sin|para|com|sem|met|zonder|voor|med|uten|utan|za|ze|se|bez)\s",
+    re.IGNORECASE,
+)
 """What ends the part of a title in which its thing is named."""
+
+_COUNTED = re.compile(
+    r"\A(?:(?:an?|the|one|two|three|four|pair|set|of|ein|eine|un|une|uno|una|um|uma|een|ett)\s+)+", re.IGNORECASE
+)
+"""What stands before its name: "a pair of"."""
 
 _SHORT, _FEWEST, _MOST = 4, 2, 0.5
 """Words of such a part at the most, and how many titles and what share of them must name things (judgement)."""
@@ -54,6 +63,11 @@ def name_and_title(
         None where one column alone is of names, where there is a title, or where both are as long.
     """
     names = [one for one in able.get("object_name", ()) if one.filled][:2]
+    title = found.get("title")
+    if not names and title is not None and title.filled and not {"title", "object_name"} & chosen.keys():
+        # "name" beside "title".
+        called = next((one for one in able["title"] if one.filled and plain(path_of(one.name)[-1]) in CALLED), title)
+        return (called, title) if called is not title and _words(title) >= _MORE * _words(called) else None
     if len(names) < 2 or "title" in found or {"title", "object_name"} & chosen.keys():
         return None
     short, long = sorted(names, key=_words)
@@ -122,7 +136,8 @@ def _names_things(titles: Sequence[str]) -> bool:
     words, endings = _things()
     named = 0
     for title in titles:
-        head = re.findall(r"[^\W\d_]+", _folded(_HEAD.split(title.strip(), maxsplit=1)[0]))
+        said = _COUNTED.sub("", words_of(title).strip(), count=1)
+        head = re.findall(r"[^\W\d_]+", _folded(_HEAD.split(said, maxsplit=1)[0]))
         if 0 < len(head) <= _SHORT:
             named += not words.isdisjoint((head[0], head[-1], " ".join(head))) or head[-1].endswith(endings)
     return named >= _FEWEST and named >= _MOST * len(titles)
@@ -158,6 +173,48 @@ def in_place_of_title(able: Mapping[str, Sequence[Column]], found: Mapping[str, 
     if name is None or not name.filled or (title is not None and title.filled):
         return None
     return next((one for one in able.get(DESCRIPTION, ()) if one.filled and one is not name), None)
+
+
+def naming_the_rest(found: Mapping[str, Column], chosen: Mapping[str, str]) -> bool:
+    """Say whether titles name things where the column of their names is empty.
+
+    Parameters
+    ----------
+    found, chosen : mapping
+        As of `named_by`.
+    """
+    name, title = found.get("object_name"), found.get("title")
+    if name is None or title is None or name is title or "object_name" in chosen:
+        return False
+    rest = [text for called, text in zip(name.values, title.values, strict=True) if text.strip() and not called.strip()]
+    return _names_things(rest[:_SOME])
+
+
+def naming_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
+    """Return the column of words that are different for nearly all objects, whatever it is called: their names.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    used : iterable of Column
+        Those that are fields already.
+    """
+    taken = {id(column) for column in used}
+    able = [
+        one
+        for one in columns
+        if id(one) not in taken
+        and named(one.name) is None
+        and len(one.distinct) >= _DIFFERENT * len(one.values)
+        and not (one.measured or one.of_machine or one.numbering or one.pictured > _MOST or one.dimensional > _MOST)
+        and sum(len(text.split()) > 1 for text in one.filled) >= _MOST * len(one.filled)
+    ]
+    return max(able, key=lambda one: len(one.distinct), default=None)
+
+
+_DIFFERENT = 0.8
+"""Share of the objects that have names of their own (judgement)."""
 
 
 def describing(able: Mapping[str, Sequence[Column]], title: Column) -> Column | None:

@@ -10,7 +10,7 @@ from pipeline.collection.display_words import says_away
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.names import DESCRIPTION, named
-from pipeline.collection.places import parted
+from pipeline.collection.places import LONGEST, ROOM, parted
 
 _PLACED = 0.5
 """Share of a column's texts that must begin as places do (judgement)."""
@@ -21,6 +21,7 @@ _MOST_WORDS, _FEWEST = 3, 6
 _LABEL = re.compile(r"(?<!\w)([^\W\d_]{4,24})\s*:\s")
 _OFTEN = 0.2
 """Share of the texts in which a label stands (judgement)."""
+_SIGNS_OF_ROOMS = (2, 3)
 _SAYING = ("title", "object_name", DESCRIPTION)
 
 
@@ -51,7 +52,13 @@ def _placed(column: Column) -> float:
 
 def _is_place(text: str) -> bool:
     first = named(text.split(maxsplit=1)[0]) if text.split() else None
-    return (first is not None and first.field == "gallery") or bool(parted(text).case) or says_away(text)
+    # "Utstilt: Salen" tells where a thing is shown.
+    shown = first is not None and first.field == "on_display" and ":" in text
+    # 展厅一, 库房二: a word for a room, with its number behind it and no blank.
+    room = any((what := named(text[:long])) is not None and what.field == "gallery" for long in _SIGNS_OF_ROOMS)
+    called = first is not None and first.field == "gallery"
+    spoken = len(text) <= LONGEST and ROOM.search(text) is not None
+    return room or shown or called or spoken or bool(parted(text).case) or says_away(text)
 
 
 def parting(columns: Sequence[Column], used: Iterable[Column], place: Column | None) -> Question | None:

@@ -38,6 +38,19 @@ class LongSide(BaseModel):
     unit: str = Field(default="", description="Unit of the numbers that name none.")
 
 
+class LongAgain(BaseModel):
+    """Further columns of measurements, in a source in long form."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    type: Name | None = Field(
+        default=None, description="The column that says what was measured; left out where it is that of the first ones."
+    )
+    value: Name = Field(description="The column with the numbers.")
+    unit: Name | None = Field(default=None, description="The column with their units.")
+    part: Name | None = Field(default=None, description="The column that says of which part.")
+
+
 class LongForm(BaseModel):
     """A source in long form: several rows an object, each with one of its measurements, or with one of its parts."""
 
@@ -50,6 +63,11 @@ class LongForm(BaseModel):
     value: Name | None = Field(default=None, description="The column with the numbers.")
     unit: Name | None = Field(default=None, description="The column with their units.")
     part: Name | None = Field(default=None, description="The column that says of which part, such as whole or frame.")
+    again: tuple[LongAgain, ...] = Field(
+        default=(),
+        description="Further columns: of other measurements, where a row has several (Measurement 2 type), or of the "
+        "same in other units, of which those that contradict the first ones are refused.",
+    )
     separator: str = Field(
         default="",
         max_length=3,

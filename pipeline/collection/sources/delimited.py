@@ -9,14 +9,16 @@ from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BufferedReader, TextIOBase, TextIOWrapper
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Request, SourceSettings
 from pipeline.collection.sources.heads import joined_heads
 from pipeline.collection.sources.rows import Row
+from pipeline.collection.sources.sideways import turned
+from pipeline.errors import InputError
 
 # In all but UTF-16 (Excel's "Unicode text") the line ends survive a broken byte, so that it spoils one row only.
 Encoding = Literal[
@@ -49,6 +51,9 @@ RECORD_LIMIT = 16 << 20
 
 RESCUE_LIMIT = 64 << 20
 """Characters that may be read again after broken rows, all together: broken quotes in every row must not take hours."""
+
+MOST_STARTS = 500
+"""Columns of a printed list."""
 
 _ROWS, _TOGETHER = 256, 1 << 20
 """Rows, and characters, after which those that were read are given on."""
@@ -124,12 +129,16 @@ def _field_limit() -> Iterator[None]:
 class _Table:
     """A CSV file that is being read."""
 
-    def __init__(self, binary: BufferedReader, file: str, delimiter: str, encoding: str) -> None:
+    def __init__(self, binary: BufferedReader, file: str, delimiter: str | tuple[int, ...], encoding: str) -> None:
         self._file, self._encoding = file, encoding
         binary.seek(_mark(binary, file, encoding))
         stream = TextIOWrapper(binary, encoding=encoding, errors="surrogateescape", newline="")
         self._lines = _Lines(stream, file)
-        self._reader = csv.reader(self._lines, delimiter=delimiter, strict=True)
+        self._reader: Iterator[list[str]] = (
+            csv.reader(self._lines, delimiter=delimiter, strict=True)
+            if isinstance(delimiter, str)
+            else (cut_at(delimiter, line) for line in self._lines)
+        )
 
     def some(self) -> list[tuple[int, list[str], tuple[str, str]]]:
         """Return some rows that are not blank: their first line, their cells, why they cannot be used; none at the end.
@@ -166,8 +175,21 @@ class _Table:
         return out
 
 
+def cut_at(starts: tuple[int, ...], line: str) -> list[str]:
+    """Return the cells of a line that begin at some characters, from 1 on; none of a line of dashes."""
+    if not line.strip(" -=_+|\r\n\f"):
+        return []
+    ends = (*(start - 1 for start in starts[1:]), len(line))
+    return [line[start - 1 : end].strip() for start, end in zip(starts, ends, strict=True)]
+
+
 def read_delimited(
-    binary: BufferedReader, file: str, delimiter: str, encoding: str, header_row: int = 1, header_rows: int = 1
+    binary: BufferedReader,
+    file: str,
+    delimiter: str | tuple[int, ...],
+    encoding: str,
+    header_row: int = 1,
+    header_rows: int = 1,
 ) -> Iterator[Row]:
     """Yield the header (number 0) of a CSV file and then every row that is not blank, whole or broken.
 
@@ -179,8 +201,8 @@ def read_delimited(
         The file, at its beginning.
     file : str
         Its name in messages.
-    delimiter : str
-        The one character between two cells.
+    delimiter : str or tuple of int
+        The one character between two cells, or the characters of a line at which cells begin, from 1 on.
     encoding : str
         How its letters are coded.
     header_row : int
@@ -215,6 +237,8 @@ def read_delimited(
                     continue
                 cells = heads[0] if header_rows == 1 else joined_heads(heads)
                 width = len(cells)
+            elif not isinstance(delimiter, str) and cells in heads:
+                continue  # the head of the next printed page
             elif not fault[0] and len(cells) != width:
                 fault = (
                     f"{len(cells)} cells, the header has {width}",
@@ -287,6 +311,17 @@ class HeadedSettings(SourceSettings):
         description="Rows that hold one text alone, such as a room's name across a list, head the rows below them: "
         'the column "heading" has it for each of these.',
     )
+    sideways: bool = Field(
+        default=False,
+        description="Objects stand side by side: each column is one, and the first cell of each row names a field.",
+    )
+
+    def straight(self, rows: Iterator[Row], file: str) -> Iterator[Row]:
+        """Return the rows of objects, turned where they stand side by side.
+
+        rows : the header first;  file : the source's name in messages
+        """
+        return turned(rows, file) if self.sideways else rows
 
 
 class CsvSettings(HeadedSettings):
@@ -304,6 +339,22 @@ class TsvSettings(HeadedSettings):
 
     format: Literal["tsv"] = Field(description="The kind of source.")
     encoding: Encoding = Field(description="How its letters are coded; Excel's Unicode text is utf-16.")
+
+
+class FixedSettings(HeadedSettings):
+    """How a text is read whose cells begin at the same places of each line, as those of printed lists do."""
+
+    format: Literal["fixed"] = Field(description="The kind of source.")
+    encoding: Encoding = Field(description="How its letters are coded.")
+    starts: tuple[Annotated[int, Field(ge=1, le=FIELD_LIMIT)], ...] = Field(
+        min_length=2, max_length=MOST_STARTS, description="At which character of a line each column begins, from 1 on."
+    )
+
+    @model_validator(mode="after")
+    def _rising(self) -> Self:
+        if list(self.starts) != sorted(set(self.starts)):
+            raise InputError("[source] starts needs each column's first character, from left to right")
+        return self
 
 
 class Csv(FileSource):
@@ -330,8 +381,36 @@ class Csv(FileSource):
         Row
             First the header.
         """
-        own = request.settings
-        return read_delimited(binary, file, own.delimiter, own.encoding, own.header_row or 1, own.header_rows or 1)
+        own: CsvSettings = request.settings
+        return own.straight(
+            read_delimited(binary, file, own.delimiter, own.encoding, own.header_row or 1, own.header_rows or 1), file
+        )
+
+
+class Fixed(Csv):
+    """Text with its cells below each other, parted by blanks alone; lines of dashes and repeated heads are no rows."""
+
+    name = "fixed"
+    title = "a text with its cells below each other"
+    Settings = FixedSettings
+
+    def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
+        """Yield the header and the rows.
+
+        Parameters
+        ----------
+        binary, file, request : BufferedReader, str, Request
+            As of `FileSource.rows`.
+
+        Yields
+        ------
+        Row
+            First the header.
+        """
+        own: FixedSettings = request.settings
+        return own.straight(
+            read_delimited(binary, file, own.starts, own.encoding, own.header_row or 1, own.header_rows or 1), file
+        )
 
 
 class Tsv(Csv):
@@ -354,5 +433,7 @@ class Tsv(Csv):
         Row
             First the header.
         """
-        own = request.settings
-        return read_delimited(binary, file, "\t", own.encoding, own.header_row or 1, own.header_rows or 1)
+        own: TsvSettings = request.settings
+        return own.straight(
+            read_delimited(binary, file, "\t", own.encoding, own.header_row or 1, own.header_rows or 1), file
+        )

@@ -83,6 +83,7 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
         ("part", long.part),
         ("called", long.called),
         *(("sides", side.column) for side in long.sides),
+        *(("again", name) for one in long.again for name in (one.type, one.value, one.unit, one.part)),
     )
     for key, name in keyed:
         if name is not None and name not in names:
@@ -90,13 +91,25 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
                 f"{file}: [source.long] {key}: there is no column {name!r}; its columns are "
                 f"{', '.join(map(repr, names[:80]))}. Name one of them in the mapping"
             )
-    telling = (long.type, long.value, long.unit, long.part, *(side.column for side in long.sides))
-    told = {names.index(name) for name in telling if name is not None}
+    told = {names.index(name) for key, name in keyed if name is not None and key not in ("object", "called")}
     kept = [at for at in range(len(names)) if at not in told]
     yield Row(0, header.line, [header.cells[at] for at in kept] + list(COLUMNS))
     number_at = names.index(long.object)
-    places = tuple(None if one is None else names.index(one) for one in (long.type, long.value, long.unit, long.part))
-    part_at = places[3]
+
+    def place_of(name: str | None) -> int | None:
+        return None if name is None else names.index(name)
+
+    part_at = place_of(long.part)
+    first = (place_of(long.type), place_of(long.value), place_of(long.unit), part_at)
+    again = [
+        (
+            first[0] if one.type is None else place_of(one.type),
+            place_of(one.value),
+            place_of(one.unit),
+            part_at if one.type is None else place_of(one.part),
+        )
+        for one in long.again
+    ]
     called_at = None if long.called is None else names.index(long.called)
     sides = [(names.index(side.column), side) for side in long.sides]
     objects: dict[str, _Gathered] = {}
@@ -124,8 +137,9 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
             for at, side in sides:
                 _measure(found, _LongCell(side.kind, row.cells[at], side.unit, part, row.faults.get(at)))
         else:
-            for said in _apart(row, places, long.separator):
-                _measure(found, said)
+            for places in (first, *(those for those in again if those[1] is not None and row.cells[those[1]].strip())):
+                for said in _apart(row, places, long.separator):
+                    _measure(found, said)
     width = len(kept)
     last = 0
     for found in objects.values():

@@ -179,6 +179,32 @@ def kind_of(text: str) -> str | None:
     return KIND_OF.get(words[0]) or _spoken(words[0]) if len(words) == 1 else None
 
 
+def kind_within(text: str) -> tuple[str, str] | None:
+    """Return the kind of measurement that a text names, and what else it says: "Sheet Height" as ("height", "sheet").
+
+    Parameters
+    ----------
+    text : str
+        In any of the languages of KINDS.
+
+    Returns
+    -------
+    (str, str) or None
+        None where neither the whole, nor its last or first word, names a kind.
+    """
+    whole = kind_of(text)
+    if whole is not None:
+        return whole, ""
+    words = [word for word in map(plain_word, text.split()) if word]
+    if len(words) < 2:
+        return None
+    for word, others in ((words[-1], words[:-1]), (words[0], words[1:])):
+        kind = kind_of(word)
+        if kind is not None:
+            return kind, " ".join(others)
+    return None
+
+
 def _spoken(word: str) -> str | None:
     """Return the kind that a word names in dimension texts of any language; a letter may name anything."""
     meant, kind = meanings().get(word.translate(ALIKE).casefold(), ("", ""))

@@ -10,7 +10,7 @@ from typing import Literal
 from pydantic import Field
 
 from pipeline.collection.sources.base import SourceSettings
-from pipeline.collection.sources.measurement_terms import KINDS, PARTS, kind_of, part_of, unit_of
+from pipeline.collection.sources.measurement_terms import KINDS, PARTS, kind_of, kind_within, part_of, unit_of
 from pipeline.collection.sources.rows import NO_FAULTS, Row
 from pipeline.quantities import LENGTHS, MASSES
 
@@ -47,6 +47,8 @@ SAME = 0.01
 """Relative difference up to which two statements of one measurement agree: what is rounded when inches become cm."""
 
 NUMBER = re.compile(r"[+-]?\d+(?:[.,]\d+)?", re.ASCII)
+FRACTION = re.compile(r"(?:(\d{1,4})[ -])?(\d{1,2})/([1-9]\d?)", re.ASCII)
+"""A number as inches are written: 12 3/4."""
 # Three digits behind a comma may be thousands: these are left as they are, to be doubted.
 _COMMA = re.compile(r"[+-]?\d+,(?:\d{1,2}|\d{4,})", re.ASCII)
 _TRAILING = re.compile(r"(\.\d*?)0+$")
@@ -89,7 +91,13 @@ class Measurements:
         kind, value, unit, part : str
             Such as "hoogte", "12.5", "cm", "geheel".
         """
-        self.take(kind_of(kind), value, unit, part_of(part), said=f"{part} {kind}".strip())
+        said = f"{part} {kind}".strip()
+        within = None if part.strip() else kind_within(kind)
+        if within is not None:
+            known, of = within
+            self.take(known, value, unit, part_of(of), said=said)
+        else:
+            self.take(kind_of(kind), value, unit, part_of(part), said=said)
 
     def take(self, kind: str | None, value: str, unit: str, part: str | None, said: str = "") -> None:
         """Take one measurement whose kind and part are known.
@@ -219,4 +227,9 @@ def _short(value: str) -> str:
 
 def _si(value: str, unit: str) -> float | None:
     factor = LENGTHS.get(unit, MASSES.get(unit))
-    return float(value.replace(",", ".")) * factor if factor and NUMBER.fullmatch(value) else None
+    if not factor:
+        return None
+    if NUMBER.fullmatch(value):
+        return float(value.replace(",", ".")) * factor
+    parts = FRACTION.fullmatch(value)
+    return None if parts is None else (int(parts[1] or 0) + int(parts[2]) / int(parts[3])) * factor

@@ -15,10 +15,11 @@ from typing import Any
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.hand_cell import LONGEST, of_hand
-from pipeline.collection.sources.measurement_terms import kind_of, unit_of
-from pipeline.collection.sources.measurements import NUMBER, OF_MEASUREMENTS, Measurements, joined
+from pipeline.collection.sources.measurement_terms import kind_of, kind_within, unit_of
+from pipeline.collection.sources.measurements import FRACTION, NUMBER, OF_MEASUREMENTS, Measurements, joined
 from pipeline.collection.sources.rows import Row, as_text
 from pipeline.errors import InputError
+from pipeline.quantities import MASSES
 
 MOST_COLUMNS = 2000
 """Names of one museum's objects."""
@@ -41,6 +42,18 @@ _LAST = {
 }
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 _WITH_UNIT = re.compile(rf"({NUMBER.pattern})\s*([^\W\d]+\.?|\")", re.ASCII)
+_DELETED = (
+    "its source says that it was deleted",
+    "nothing, if the object is gone; else harvest it again",
+)
+_PART_NAMES = ("part", "element", "component", "name", "label", "title", "type", "elementName", "element_name")
+_IN_PLAN = frozenset(("length", "width", "depth"))
+_LITERAL = frozenset(("type", "value", "xml:lang", "datatype"))
+_LITERALS = ("literal", "typed-literal", "uri", "bnode")
+_ADDRESS = re.compile(r"https?://\S+", re.ASCII)
+ADDRESS = "url"
+"""Below a name with several texts, of which some are addresses: these."""
+
 _SPOKEN = ("lang", "language", "id")
 """Names of what may look like a unit, and is none."""
 
@@ -88,8 +101,15 @@ def object_rows(objects: Objects, file: str, unit: str | None, remedy: str) -> I
             number,
             line,
             [cells.get(name, "") for name in names],
-            faults={names[name]: fault for name, fault in faults.items()},
+            _DELETED if _is_deleted(one) else ("", ""),
+            {names[name]: fault for name, fault in faults.items()},
         )
+
+
+def _is_deleted(record: Mapping[str, Any]) -> bool:
+    """Whether a record says that it is none any more, as those of a harvest (OAI-PMH) do."""
+    head = record.get("header")
+    return isinstance(head, dict) and head.get("status") == "deleted"
 
 
 def flat(record: Mapping[str, Any], unit: str | None = None) -> tuple[dict[str, str], dict[str, tuple[str, str]]]:
@@ -113,28 +133,38 @@ def flat(record: Mapping[str, Any], unit: str | None = None) -> tuple[dict[str, 
     def put(path: str, text: str) -> None:
         cells[path] = joined([cells[path], text]) if cells.get(path) else text
 
-    def take(path: str, value: Any) -> None:
+    def take(path: str, value: Any, part: str = "") -> None:
         if isinstance(value, dict):
+            literal = _literal(value)
+            if literal is not None:
+                put(path, as_text(literal))
+                return
             for name, one in value.items():
-                take(f"{path}.{name}" if path else name, one)
+                take(f"{path}.{name}" if path else name, one, part)
         elif isinstance(value, list) and not all(isinstance(one, _SCALARS) or one is None for one in value):
-            if not _measured(path, value):
+            if not _measured(path, value, part):
                 for one in value:
-                    take(path, one)
+                    take(path, one, _part_of(one) or part)
                 for kind, text in _of_kinds(value):
                     put(f"{path}.{kind}", text)
         elif isinstance(value, list):
-            put(path, joined(as_text(one) for one in value))
+            texts = [as_text(one) for one in value]
+            addresses = [text for text in texts if _ADDRESS.match(text)]
+            if 0 < len(addresses) < len(texts):
+                # A number and the page of the object are two things: "NF.1942-0121; https://museum.no/id/10400".
+                put(f"{path}.{ADDRESS}", joined(addresses))
+                texts = [text for text in texts if text not in addresses]
+            put(path, joined(texts))
         else:
             put(path, as_text(value))
 
-    def _measured(path: str, value: list[Any]) -> bool:
+    def _measured(path: str, value: list[Any], part: str) -> bool:
         said = measurements_in(value)
         if said is None:
             return False
         measured = Measurements(unit)
-        for one in said:
-            measured.add(*one)
+        for kind, number, of, own in said:
+            measured.add(*_in_part(kind, number, of, own, part))
         for name, text in measured.cells().items():
             put(f"{path}.{name}", text)
         for at, fault in measured.faults(OF_MEASUREMENTS).items():
@@ -161,7 +191,9 @@ def measurements_in(entries: Sequence[Any]) -> list[tuple[str, str, str, str]] |
     list of (str, str, str, str) or None
     """
     known = next((one for one in map(_kind_within, entries) if one), None)
-    said = [] if known is None else [one for one in (_measurement(one, known) for one in entries) if one is not None]
+    if known is None and not all(map(_is_mass, entries)):
+        return None
+    said = [one for one in (_measurement(one, known) for one in entries) if one is not None]
     return said if said and len(said) == len(entries) else None
 
 
@@ -200,7 +232,15 @@ def _number_within(value: Mapping[str, Any]) -> str | None:
     return able[0] if len(able) == 1 and any(unit_of(_text(one)) for one in value.values()) else None
 
 
-def _measurement(value: Any, known: str) -> tuple[str, str, str, str] | None:
+def _is_mass(value: Any) -> bool:
+    """Whether an entry is a number with a unit of masses, which needs no word for what it is."""
+    if not isinstance(value, dict) or (number := _number_within(value)) is None:
+        return False
+    units = {unit_of(_text(one)) for name, one in value.items() if name != number and name not in _SPOKEN}
+    return bool(units & MASSES.keys())
+
+
+def _measurement(value: Any, known: str | None) -> tuple[str, str, str, str] | None:
     """Return kind, number, unit and part of what one entry of a list says; None where it says no measurement.
 
     known : the name under which another entry says its kind
@@ -210,7 +250,7 @@ def _measurement(value: Any, known: str) -> tuple[str, str, str, str] | None:
     able = [name for name in value if name != number and _text(value[name])]
     kind = _kind_within(value) or (known if known in able else None)
     kind = kind or next((name for name in _named(value, _KINDS) if name in able), None)
-    if kind is None:
+    if kind is None and not _is_mass(value):
         return None
     amount, within = _amount(_text(value[number])) or ("", "")
     units = [*_named(value, _UNITS), *(name for name in able if name not in _SPOKEN and unit_of(_text(value[name])))]
@@ -218,13 +258,44 @@ def _measurement(value: Any, known: str) -> tuple[str, str, str, str] | None:
         next((_text(value[name]) for name in those if name in able and name != kind), "")
         for those in (units, _named(value, _PARTS))
     )
-    return _text(value[kind]), amount, unit or within, part
+    return "weight" if kind is None else _text(value[kind]), amount, unit or within, part
+
+
+def _part_of(value: Any) -> str:
+    """Return the name of an entry with measurements within it, of which they all are: a part of the object."""
+    if not isinstance(value, dict) or not any(_has_measurements(one) for one in value.values()):
+        return ""
+    return next((_text(value[name]).strip() for name in _PART_NAMES if _text(value.get(name, "")).strip()), "")
+
+
+def _has_measurements(value: Any) -> bool:
+    if isinstance(value, dict):
+        return any(map(_has_measurements, value.values()))
+    return isinstance(value, list) and measurements_in(value) is not None
+
+
+def _in_part(kind: str, number: str, unit: str, own: str, part: str) -> tuple[str, str, str, str]:
+    """Return a measurement of a part as `Measurements.add` takes it; the part's name may say which it is itself."""
+    if own or not part:
+        return kind, number, unit, own
+    within, known = kind_within(part), kind_of(kind)
+    # Lengths in plan have several names.
+    if within is not None and known is not None and (within[0] == known or {within[0], known} <= _IN_PLAN):
+        return part, number, unit, ""
+    return kind, number, unit, part
+
+
+def _literal(value: Mapping[str, Any]) -> Any:
+    """Return the value of a literal or an address of a graph, as answers to SPARQL have it; None for anything else."""
+    if "value" in value and value.keys() <= _LITERAL and value.get("type") in _LITERALS:
+        return value["value"] if isinstance(value["value"], _SCALARS) else None
+    return None
 
 
 def _of_kinds(entries: Sequence[Any]) -> Iterator[tuple[str, str]]:
-    """Yield kind and text of each entry of a list of several, all of which say both: numbers, old and new, say."""
+    """Yield kind and text of each entry of a list, all of which say both: numbers, old and new, say."""
     told = []
-    for one in entries if len(entries) > 1 else ():
+    for one in entries:
         kind, text = (next((name for name in names if isinstance(one, dict) and _text(one.get(name, ""))), None)
                       for names in (_KINDS[:2], _TEXTS))  # fmt: skip
         if kind is None or text is None or not 0 < len(said := _text(one[kind]).strip()) <= _KIND_LENGTH:
@@ -252,7 +323,7 @@ def _amount(text: str) -> tuple[str, str] | None:
     told = _WITH_UNIT.fullmatch(text.strip())
     if told:
         return (told[1], told[2]) if unit_of(told[2]) else None
-    return (text.strip(), "") if _is_written(text) else None
+    return (text.strip(), "") if FRACTION.fullmatch(text.strip()) or _is_written(text) else None
 
 
 def _is_written(text: str) -> bool:

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from pipeline.collection.sources.adlib import Adlib
 from pipeline.collection.sources.base import HEAD, FileSource, Source, SourceSettings
+from pipeline.collection.sources.cards import Cards
 from pipeline.collection.sources.database import Database
-from pipeline.collection.sources.delimited import Csv, Tsv
+from pipeline.collection.sources.delimited import Csv, Fixed, Tsv
 from pipeline.collection.sources.files import head_of
 from pipeline.collection.sources.folders import files_in
 from pipeline.collection.sources.json_objects import Json
@@ -44,7 +45,21 @@ def _source(value: object) -> Source:
 
 SOURCES: Registry[Source] = Registry(
     "kouros.sources",
-    (Csv(), Tsv(), Xlsx(), Lido(), Adlib(), MuseumPlus(), LinkedArt(), Database(), Tables(), Json(), Xml()),
+    (
+        Csv(),
+        Tsv(),
+        Fixed(),
+        Cards(),
+        Xlsx(),
+        Lido(),
+        Adlib(),
+        MuseumPlus(),
+        LinkedArt(),
+        Database(),
+        Tables(),
+        Json(),
+        Xml(),
+    ),
     _source,
 )
 """All kinds of sources, in the order in which they are asked whether they recognise one."""

@@ -28,6 +28,8 @@ MOST = 200
 """Tables of one folder."""
 
 _ENDINGS = frozenset({".csv", ".tsv"})
+_OF_ARCHIVE = "meta.xml"
+"""What is in a folder whose tables are .txt: a Darwin Core archive that was unpacked."""
 _MOST_COLUMNS = 2000
 _UNSAFE = re.compile(r"[^\w-]", re.ASCII)
 
@@ -64,9 +66,10 @@ class Tables(Source):
 
 
 def files_of(folder: Path) -> list[Path]:
-    """Return the CSV files of a folder, those of its own folders left out, by name."""
+    """Return the CSV files of a folder, those of its own folders left out, by name; of an archive its .txt too."""
     try:
-        return sorted(p for p in folder.iterdir() if p.suffix.casefold() in _ENDINGS and p.is_file())
+        endings = _ENDINGS | ({".txt"} if (folder / _OF_ARCHIVE).is_file() else set())
+        return sorted(p for p in folder.iterdir() if p.suffix.casefold() in endings and p.is_file())
     except OSError as problem:
         raise unreadable(folder, problem) from problem
 

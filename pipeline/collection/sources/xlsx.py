@@ -480,17 +480,11 @@ class Xlsx(FileSource):
         Row
             First the header.
         """
-        own = request.settings
+        own: XlsxSettings = request.settings
 
         def read(sheet: str | None) -> Iterator[Row]:
-            return read_sheet(
-                binary,
-                file,
-                sheet=sheet,
-                header_row=own.header_row or 1,
-                header_rows=own.header_rows or 1,
-                key=request.key_column,
-                texts=request.texts,
-            )
+            at = {"header_row": own.header_row or 1, "header_rows": own.header_rows or 1}
+            rows = read_sheet(binary, file, sheet=sheet, key=request.key_column, texts=request.texts, **at)
+            return own.straight(rows, file)
 
         return one_below_another(read, own.sheets, file) if own.sheets else read(own.sheet)

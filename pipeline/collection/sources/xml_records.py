@@ -159,10 +159,11 @@ def refusing(events: Any, file: str, what: str, reached: Callable[[], str] = lam
     Raises
     ------
     CollectionError
-        For a file that is damaged or incomplete, or declares a document type.
+        For a file that is damaged or incomplete, or declares a document type that is more than a list of elements.
     """
     from lxml import etree
 
+    declared = None
     while True:
         try:
             event, element = next(events)
@@ -178,12 +179,26 @@ def refusing(events: Any, file: str, what: str, reached: Callable[[], str] = lam
                 f"{file}: reading stopped{reached()}: {problem.strerror or problem}; see whether the disk or the "
                 "network share is there and import again"
             ) from problem
-        if event == "start" and element.getroottree().docinfo.doctype:
-            raise CollectionError(
-                f"{file}: declares a document type or entities, which a {what} never needs and can hide harm; remove "
-                "the line that begins with <!DOCTYPE"
-            )
+        if declared is None and event == "start":
+            declared = element.getroottree().docinfo
+            if declared.doctype and not _is_list_of_elements(declared):
+                raise CollectionError(
+                    f"{file}: declares a document type or entities, which a {what} never needs and can hide harm; "
+                    "remove the line that begins with <!DOCTYPE"
+                )
         yield event, element
+
+
+def _is_list_of_elements(declared: Any) -> bool:
+    """Whether a document type names its elements and their attributes alone, as EMu's exports do: nothing to fetch."""
+    within = declared.internalDTD
+    return not (
+        declared.public_id
+        or declared.system_url
+        or within is None
+        or next(within.iterentities(), None) is not None
+        or next(within.iterelements(), None) is None
+    )
 
 
 def local_name(element: Any) -> str:

@@ -1,0 +1,89 @@
+"""Which columns say what is on display, how, and what is in the museum no more."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import tomlkit
+
+from pipeline.collection.display_words import flag_of
+from pipeline.collection.guessing.columns import Column
+from pipeline.collection.guessing.fields import MOST_WORDS, tells_display
+from pipeline.collection.guessing.names import path_of, plain
+from pipeline.collection.guessing.source import GuessNotes
+
+_REMOVED = frozenset(
+    {
+        *("disposal", "disposed", "deaccession", "deaccessioned", "deaccessioning", "aussonderung", "abgang"),
+        *("radiation", "baja", "dismissione", "alienazione", "afstoting", "utrangering", "abate"),
+    }
+)
+"""Words of a column that tells how an object left the museum."""
+_FEW = 0.5
+"""Share of the objects that may have left it (judgement)."""
+
+
+def removed(columns: Sequence[Column], found: Mapping[str, Column], told: GuessNotes) -> tomlkit.items.Table | None:
+    """Return the flag by which what left the museum is not on display, where no other one tells; say so.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    found : mapping of str to Column
+        Field -> its column.
+    told : GuessNotes
+        What is said of it; grows.
+    """
+    able = [
+        one
+        for one in columns
+        if 0 < len(one.filled) <= _FEW * len(one.values)
+        and any(_REMOVED.intersection(plain(word).split()) for word in path_of(one.name))
+    ]
+    column = min(able, key=lambda one: (-len(one.filled), len(one.distinct)), default=None)
+    if column is None:
+        return None
+    said = f"{len(column.filled)} objects have a text in {column.name!r}, such as {column.filled[0][:80]!r}"
+    if "on_display" in {*found, *told.choices} or len(column.distinct) > MOST_WORDS:
+        told.doubts.append(f"{said}: see whether they are still there, and leave out those that are not")
+        return None
+    entry = tomlkit.table()
+    entry["column"] = column.name
+    entry["values"] = values = tomlkit.inline_table()
+    for text in {text.casefold(): text for text in column.distinct}.values():
+        values[text] = False
+    told.doubts.append(
+        f"{said}: these are taken to be there no more, and not on display; --choose on_display=- leaves that"
+    )
+    return entry
+
+
+def words_of_display(found: dict[str, Column], told: GuessNotes) -> None:
+    """Take a column for how objects are displayed only where it holds words; one of mounts, too, that holds such."""
+    column = found.get("displayed")
+    if column is not None and "displayed" not in told.choices and not tells_display(column):
+        del found["displayed"]
+        if "on_display" not in {*found, *told.choices} and any(
+            flag_of(t, display=True) is not None for t in column.filled
+        ):
+            # "Displayed?" is answered by yes and no.
+            found["on_display"] = column
+    mounts = found.get("support")
+    if "displayed" not in found and mounts is not None and "support" not in told.choices and tells_display(mounts):
+        found["displayed"] = found.pop("support")
+        told.doubts.append(f"column {mounts.name!r} is taken to say in words how objects are displayed or held")
+
+
+def place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:
+    """Take a column called "on view" for the place, where it names a gallery for what is on view, and else nothing."""
+    shown = found.get("on_display")
+    if shown is None or not shown.filled:
+        return
+    known = [flag_of(text, display=True) for text in shown.distinct]
+    if known.count(None) > 0.5 * len(known) and (len(shown.filled) < len(shown.values) or False in known):
+        found["gallery"] = found.pop("on_display")
+        told.doubts.append(
+            f"column {shown.name!r} is taken to name the place of what is on display, such as "
+            f"{shown.filled[0][:80]!r}; what has none is not on display"
+        )
