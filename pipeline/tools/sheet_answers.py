@@ -335,13 +335,13 @@ def _faults(reading: Reading, path: Path, unknown: set[str]) -> list[CellFault]:
     sheet = sheet_title(length) if length else path.name
     out = [*sheet_heads(path).faults]
     lines = dict(reading.places)
-    for one in reading.rejected:
-        message, remedy, first = _bare(one.message, path), one.remedy, _TWICE.search(one.message)
+    for row in reading.rejected:
+        message, remedy, first = _bare(row.message, path), row.remedy, _TWICE.search(row.message)
         if first is not None:
             # By the rows that the sheet numbers, and for whom nothing was exported.
             message = message.replace(first[0], f"in row {lines[int(first[1])]} already")
             remedy = "write all that was found of one object in one row"
-        out.append(CellFault(sheet, one.line, one.field, message, remedy))
+        out.append(CellFault(sheet, row.line, row.field, message, remedy))
     for item, (_row, line) in zip(reading.items, reading.places, strict=True):
         if item.object_number in unknown:
             message = f"there is no object {item.object_number[:80]!r} in the inventory"
