@@ -197,9 +197,8 @@ def _other(cell: str, plain: str, figures: str, unit: str) -> HandCell:
     units = _OTHERS.get(unit, {"": 1.0})
     if named not in units:
         known = ", ".join(name for name in units if name)
-        raise InputError(
-            f"{cell!r} has something behind its number that is not understood{f' ({known} are)' if known else ''}"
-        )
+        others = f" (understood: {known})" if known else ""
+        raise InputError(f"{cell!r} has something behind its number that is not understood{others}")
     # Rounded once, where the number is exact: 30 % is 0.3.
     value = float(_fraction(cell, found) * Fraction(str(units[named])))
     return HandCell(value, plain if named else f"{plain} {unit}".removesuffix(" -"), named=bool(named))

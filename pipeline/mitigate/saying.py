@@ -80,7 +80,7 @@ TOO_MUCH = (
 )
 """Follows the sentence of a measure that asks more of a case, a plinth or a shelf than that takes (furniture.csv)."""
 
-PERHAPS_TOO_MUCH = "A light one of such furniture does not take that: see first what it is made of."
+PERHAPS_TOO_MUCH = "Light furniture of this kind cannot take that: see first what it is made of."
 """Follows the sentence of a measure that asks for more than the low end of what its furniture takes."""
 
 ON_GLASS = (

@@ -12,6 +12,9 @@ from pipeline.report.language import _, local
 
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 _BIDI = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+BREAKS = re.compile(r"[^\S\u00a0\u202f]+")
+"""Where a line may break: not between a number and its unit."""
+
 _UNIT_SUFFIX = re.compile(r"_(m|kg|hz|pa|deg|s|g|rad)$")
 
 
@@ -26,7 +29,7 @@ def clean(text: str) -> str:
 
 def plain(text: str) -> str:
     """Return the text for places without markup (a page title, a text alternative): no direction marks, one line."""
-    return " ".join(_BIDI.sub("", clean(text)).split())
+    return " ".join(BREAKS.split(_BIDI.sub("", clean(text)))).strip()
 
 
 _BARE = re.compile(r"\S{1,6}")

@@ -12,11 +12,13 @@ from pipeline.operations.workspace import locked, open_workspace
 from pipeline.quantities import counted
 from pipeline.settings import Settings
 from pipeline.tools.sheet_answers import SheetTaken, bounded, take_sheet
+from pipeline.tools.sheet_heads import OTHER_BOOKS
 
 TAKEN, REFUSED = "taken", "refused"
 """Folders in it: of what was taken up, and of what was refused, with the reasons."""
 
-ENDINGS = (".xlsx", ".csv")
+ENDINGS = (".xlsx", ".csv", *OTHER_BOOKS)
+"""Of the others than the first two it is said that they are not read: nobody else tells who put them there."""
 
 SETTLING = 60.0
 """Seconds in which a file that cannot be read may still be on its way into the folder."""

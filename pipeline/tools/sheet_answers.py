@@ -2,6 +2,7 @@
 
 import logging
 import os
+import re
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from pipeline.collection.errors import NoRowsError
 from pipeline.collection.inventory import Difference, add_sheet, object_numbers
 from pipeline.collection.inventory.local_measurements import filled_in
 from pipeline.collection.reading import Reading
+from pipeline.collection.record import CHOICES
 from pipeline.collection.sources.xlsx import read_sheet as rows_of_sheet
 from pipeline.collection.sources.xlsx import visible_sheets
 from pipeline.errors import InputError, fault_words
@@ -23,7 +25,7 @@ from pipeline.report.files.survey_sheet import COLUMNS, DECISIONS, DECISIONS_SHE
 from pipeline.store.decisions import read_decisions
 from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.house_answers import add_rules, rules_of
-from pipeline.tools.survey import read_sheet, sheet_columns, sheet_length
+from pipeline.tools.survey import read_sheet, sheet_columns, sheet_heads, sheet_length
 
 _OPTIONS = {"--why": "why", "--who": "who", "--on": "date", "--until": "until", "--model": "model", "--level": "level"}
 """Options of `kouros decide`, as its messages name them, and the columns that stand for them."""
@@ -300,6 +302,9 @@ def take_sheet(
     return SheetTaken(reading, changes, unknown, added, decided.made, decided.known, faults, marked, nothing)
 
 
+_TWICE = re.compile(r"in row (\d+) already")
+
+
 def bounded(stem: str) -> str:
     """Return the stem of a file's name so far as a name may have more before it and behind it."""
     return os.fsdecode(os.fsencode(stem)[:_LONGEST])
@@ -328,7 +333,15 @@ def _faults(reading: Reading, path: Path, unknown: set[str]) -> list[CellFault]:
     """Return the cells of measurements that were refused."""
     length, column_of = sheet_length(path), sheet_columns(path)
     sheet = sheet_title(length) if length else path.name
-    out = [CellFault(sheet, one.line, one.field, _bare(one.message, path), one.remedy) for one in reading.rejected]
+    out = [*sheet_heads(path).faults]
+    lines = dict(reading.places)
+    for row in reading.rejected:
+        message, remedy, first = _bare(row.message, path), row.remedy, _TWICE.search(row.message)
+        if first is not None:
+            # By the rows that the sheet numbers, and for whom nothing was exported.
+            message = message.replace(first[0], f"in row {lines[int(first[1])]} already")
+            remedy = "write all that was found of one object in one row"
+        out.append(CellFault(sheet, row.line, row.field, message, remedy))
     for item, (_row, line) in zip(reading.items, reading.places, strict=True):
         if item.object_number in unknown:
             message = f"there is no object {item.object_number[:80]!r} in the inventory"
@@ -336,7 +349,9 @@ def _faults(reading: Reading, path: Path, unknown: set[str]) -> list[CellFault]:
         for one in item.problems:
             # Where it is, the sheet only shows.
             if one.field != "gallery":
-                out.append(CellFault(sheet, line, column_of(one.field), one.message, one.remedy))
+                # Who fills a sheet in has no mapping.
+                remedy = "write one of these words" if one.field in CHOICES else one.remedy
+                out.append(CellFault(sheet, line, column_of(one.field), one.message, remedy))
     return sorted(out, key=lambda fault: fault.row)
 
 

@@ -1,6 +1,7 @@
 """Survey workbook of what to measure first, to print, fill in and import again."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
@@ -27,10 +28,14 @@ from pipeline.operations.workspace import Workspace
 from pipeline.records import Item, MeasurementRequest, Progress, Scene
 from pipeline.records.numerics import AUTO, CHART
 from pipeline.report.files.sheet_cells import HEADER_ROW
-from pipeline.report.files.survey_sheet import MASS, column_name, mass_unit, sheet_title, write_survey
+from pipeline.report.files.survey_sheet import MASS, SHOWN, WHY, column_name, mass_unit, sheet_title, write_survey
 from pipeline.store.decisions import decisions_in_force
+from pipeline.tools.sheet_heads import NUMBER, OTHER_BOOKS, SheetHeads, heads_of
 
 LENGTH_UNITS = ("cm", "mm", "m", "in", "ft")
+
+_HEAD = 65_536
+"""Bytes of the first line of a CSV file at most."""
 
 
 @dataclass(frozen=True)
@@ -159,14 +164,51 @@ def read_sheet(path: Path) -> Reading:
     """
     length = sheet_length(path)
     if length:
-        return read_items(path, sheet_mapping(length, old_mass=_in_kilograms(path, length)))
+        lost = sheet_heads(path).lost
+        return read_items(path, sheet_mapping(length, old_mass=_in_kilograms(path, length), without=lost))
+    if path.suffix.lower() in OTHER_BOOKS:
+        raise CollectionError(
+            f"{path.name}: a sheet comes back as .xlsx or .csv; save it as an .xlsx workbook where it was filled in"
+        )
     if path.suffix.lower() == ".xlsx":
         there = ", ".join(map(repr, visible_sheets(path)))
         raise CollectionError(
             f"{path.name}: no sheet of a survey, such as {sheet_title('cm')!r}; its sheets are {there}: give the "
-            "workbook that `kouros survey` wrote"
+            "workbook that `kouros survey` wrote, and leave its sheets their names"
         )
-    return read_items(path, _by_hand(load_mapping("kouros").model_dump(exclude_none=True, exclude_defaults=True)))
+    whole = load_mapping("kouros").model_dump(exclude_none=True, exclude_defaults=True)
+    return read_items(path, _by_hand(whole | {"source": whole["source"] | {"delimiter": _delimiter(path)}}))
+
+
+def sheet_heads(path: Path) -> SheetHeads:
+    """Return what is wrong with the heads of a sheet that was filled in; nothing of one that is no workbook.
+
+    Parameters
+    ----------
+    path : Path
+        The sheet.
+
+    Raises
+    ------
+    CollectionError
+        As `heads_of`.
+    """
+    length = sheet_length(path)
+    if not length:
+        return SheetHeads()
+    old = _in_kilograms(path, length)
+    there = [one.column for one in sheet_mapping(length, old_mass=old).columns.values() if one.column]
+    return heads_of(path, sheet_title(length), frozenset({*there, *SHOWN, WHY}))
+
+
+def _delimiter(path: Path) -> str:
+    """Return what parts the cells of a CSV file: where numbers have a decimal comma programs write a semicolon."""
+    with suppress(OSError), path.open("rb") as stream:
+        head = stream.readline(_HEAD).decode("utf-8-sig", "replace")
+        for mark in (";", "\t"):
+            if mark in head and NUMBER in (cell.strip(' "\r\n') for cell in head.split(mark)):
+                return mark
+    return ","
 
 
 def sheet_length(path: Path) -> str:
@@ -215,7 +257,7 @@ def _in_kilograms(path: Path, length: str) -> bool:
     return MASS in names and column_name(MASS, length) not in names
 
 
-def sheet_mapping(length: str, *, old_mass: bool = False) -> Mapping:
+def sheet_mapping(length: str, *, old_mass: bool = False, without: Collection[str] = ()) -> Mapping:
     """Return the mapping that reads a survey's sheet.
 
     Parameters
@@ -224,6 +266,8 @@ def sheet_mapping(length: str, *, old_mass: bool = False) -> Mapping:
         The unit of its lengths.
     old_mass : bool
         Whether it asks for kilograms, whatever its lengths are in.
+    without : collection of str
+        Columns that are not to be read.
 
     Returns
     -------
@@ -238,6 +282,8 @@ def sheet_mapping(length: str, *, old_mass: bool = False) -> Mapping:
         if field == MASS and not old_mass:
             unit = {"unit": mass_unit(length)}
         name = MASS if old_mass and field == MASS else column_name(field, length)
+        if name in without:
+            continue
         columns[field] = column | {"column": name} | unit
     return _by_hand(whole | {"columns": columns})
 

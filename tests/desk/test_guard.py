@@ -8,11 +8,13 @@ from hashlib import sha384
 from pathlib import Path
 
 import pytest
+from lxml import html
 
 from pipeline.desk.app import HTMX
 from pipeline.desk.guard import POLICY
 from pipeline.desk.serving import add_user, server_of
 from pipeline.errors import InputError
+from pipeline.report.pages.environment import environment, fill
 from pipeline.resources import resource
 from pipeline.settings import SettingsError, load_settings
 from tests.museum import kouros
@@ -63,6 +65,23 @@ def test_the_script_is_the_one_that_is_named(visitor: Visitor) -> None:
     assert visitor.get("/static/htmx.min.js").body == content
     assert visitor.get("/").page.xpath("//script/@integrity") == [HTMX]
     assert b"BSD" in resource("templates", "desk", "static", "htmx.LICENSE").read_bytes()
+
+
+@pytest.mark.parametrize(("name", "told"), [("", "Desk"), ("Our <museum>", "Our <museum> ·\u00a0Desk")])
+def test_a_desk_without_a_name_begins_with_no_stray_point(name: str, told: str) -> None:
+    context = {
+        "museum": name,
+        "run": None,
+        "who": None,
+        "here": "/",
+        "htmx": HTMX,
+        "words": "No.",
+        "problem": "",
+        "saved": "",
+    }
+    page = html.fromstring(fill(environment(), "desk/told.html", context))
+    assert page.xpath("string(//header//span)") == told
+    assert page.xpath("string(//title)") == f"Desk · {name or 'Desk'}"
 
 
 def test_a_form_from_elsewhere_is_refused(visitor: Visitor) -> None:

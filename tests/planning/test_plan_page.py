@@ -14,6 +14,8 @@ import pytest
 from babel.messages.mofile import write_mo
 from lxml import html
 
+from pipeline.mitigate.by_class import NAMED_FIRST
+from pipeline.mitigate.saying import HEAVIEST, SIZED
 from pipeline.planning.choice import EffortLimits
 from pipeline.planning.efforts import efforts
 from pipeline.planning.errands import Advised
@@ -127,6 +129,22 @@ def test_alone_it_has_no_links_and_in_another_language_no_english_advice() -> No
     assert shown(plan).xpath("//main//a[starts-with(@href, 'east.html#')]")
     view = plan_view(plan, sentences=False)
     assert not [text for one in view.errands for text in one.told if text == "Do it."]
+
+
+def test_what_a_number_hangs_on_stands_beside_it() -> None:
+    """The most that an object may weigh is four times the best: who buys a clamp by that alone buys four."""
+    most = HEAVIEST.format(heaviest="112 kg", weight="30.6 kg")
+    paint = "It has paint: have a conservator say first where it may be touched."
+    said = {
+        most: f"Fasten it: hold 240 kg sideways. {most.partition(';')[0]}. Weigh it first.",
+        f"{paint} {most}": f"Fasten it: hold 240 kg sideways. {most.partition(';')[0]}. Weigh it first.",
+        SIZED: "Fasten it: hold 240 kg sideways. Weigh it first.",
+        f"{SIZED} {NAMED_FIRST}": "Fasten it: hold 240 kg sideways. Say first what it is.",
+        paint: "Fasten it: hold 240 kg sideways.",
+    }
+    for rest, told in said.items():
+        plan = planned([advised("1", "fasten", 1.0, sentence=f"Fasten it: hold 240 kg sideways. {rest}")])
+        assert [text for one in plan_view(plan).errands for text in one.told] == [told]
 
 
 def test_all_words_of_the_page_can_be_translated() -> None:

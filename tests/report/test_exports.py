@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from dataclasses import replace
 from math import inf
 from pathlib import Path
 
@@ -10,8 +11,10 @@ import openpyxl
 import pyarrow.parquet as pq
 import pytest
 
+from pipeline.report.files.exports import FindingRows, page_exports
 from pipeline.report.render import pages_of
 from pipeline.report.text import safe_cell
+from pipeline.report.units import Units
 
 from . import builder
 
@@ -87,6 +90,16 @@ def test_every_object_is_exported_even_where_nothing_was_found(report: Path) -> 
     for row in rows:
         page, _, anchor = row["page"].partition("#")
         assert f'id="{anchor}"' in (report / page).read_text(encoding="utf-8")
+
+
+def test_what_has_no_title_is_called_what_it_is() -> None:
+    """As on the pages: the desk and the plan read it from here."""
+    record = builder.record()
+    first = record.assessments[0]
+    scene = replace(first.scene, item=replace(first.scene.item, title="", object_name="figurine"))
+    alone = replace(record, assessments=(replace(first, scene=scene),))
+    parts = page_exports(alone, "r", "p.html", lambda _: "a", lambda _: None, Units("cm"), FindingRows())
+    assert json.loads(parts["objects.jsonl"])["title"] == "figurine"
 
 
 def test_recommendations_carry_their_evidence(report: Path) -> None:

@@ -23,6 +23,7 @@ from pipeline.report.pages.plainly import brief_measure
 from pipeline.report.pages.views import PageView, State
 from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, numbers_to_set, walk_view
 from pipeline.report.render import pages_of
+from pipeline.report.text import cased
 from pipeline.report.units import Units, inches
 
 from . import builder
@@ -284,3 +285,25 @@ def test_a_gallery_that_is_a_number_is_called_one(tmp_path: Path) -> None:
     told = words_of(drawn([WalkRow("1", "Jug", "")], name="704"), tmp_path)
     assert "Gallery 704" in "\n".join(told)
     assert "Gallery Gallery" not in "\n".join(words_of(drawn([WalkRow("1", "Jug", "")]), tmp_path))
+
+
+@pytest.mark.parametrize("paper", ["A4", "Letter"])
+def test_a_number_and_its_unit_stand_on_one_line(paper: str, tmp_path: Path) -> None:
+    """Wherever a line ends: "170" at the end of one, and "kg" below, is read as a number of something else."""
+    texts = [f"{'to hold ' * some}to hold 170\u202fkg" for some in range(8)]
+    rows = [WalkRow(str(at), "Vase", "Fasten", text) for at, text in enumerate(texts)]
+    lines = [line for page in words_of(drawn(rows, paper), tmp_path) for line in page.splitlines()]
+    assert sum("170\u202fkg" in line for line in lines) == sum("170" in line for line in lines) > 0
+
+
+def test_the_case_stands_before_the_title(report: Path) -> None:
+    placed = 0
+    for gallery in shown(builder.record()).galleries:
+        if not gallery.on_display:
+            continue
+        told = "".join(" ".join(words_of(report / sheet_file(gallery.page.file), report)).split())
+        for one in gallery.objects:
+            if one.place and one.state is State.ACT and not one.settled:
+                placed += 1
+                assert "".join(cased(one.place).split())[:20] in told
+    assert placed

@@ -163,6 +163,7 @@ def test_what_is_no_survey_is_refused_with_its_reason_and_ends_nothing(museum: P
     (inbox / "empty.xlsx").write_bytes(b"")
     (inbox / "text.xlsx").write_text("no workbook", encoding="utf-8")
     (inbox / "other.csv").write_text("a,b\n1,2\n", encoding="utf-8")
+    (inbox / "libre.ods").write_bytes(content)
     openpyxl.Workbook().save(inbox / "blank.xlsx")
     (inbox / "line\nbreak.xlsx").write_bytes(b"PK")
     (inbox / "..xlsx").write_bytes(b"PK")
@@ -179,6 +180,7 @@ def test_what_is_no_survey_is_refused_with_its_reason_and_ends_nothing(museum: P
             aged(file)
     took = look(museum)
     bad = {"half.xlsx", "empty.xlsx", "text.xlsx", "other.csv", "blank.xlsx", "line?break.xlsx", "n" * 240 + ".xlsx"}
+    bad.add("libre.ods")
     assert {name for name, one in took.items() if not one.ok} == bad
     assert {name for name, one in took.items() if one.ok} == {"good.xlsx"}
     assert inventory(museum)[OBJECTS[0]].height_m == 0.3

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import zipfile
+from collections.abc import Callable
 from datetime import date, time
 from pathlib import Path
 from typing import Any
@@ -218,3 +220,82 @@ def test_a_workbook_in_the_style_of_libreoffice(museum: Path) -> None:
     assert set(taken_up(museum, "libre.xlsx")["changes"]["changed"]) == set(OBJECTS[:2])
     now = inventory(museum)
     assert [now[number].height_m for number in OBJECTS[:2]] == [0.085, 0.085]
+
+
+def changed_heads(museum: Path, name: str, change: Callable[[Any, dict[Any, int]], object]) -> Any:
+    """A sheet with two heights and a width, whose heads somebody changed."""
+    cells = {(OBJECTS[0], "height [cm]"): "30", (OBJECTS[1], "height [cm]"): "40", (OBJECTS[0], "width [cm]"): "12"}
+    book = openpyxl.load_workbook(fill(museum / "s.xlsx", cells))
+    sheet = book[SHEET]
+    change(sheet, {cell.value: cell.column for cell in sheet[2]})
+    book.save(museum / name)
+    return sheet
+
+
+def test_what_is_filled_in_below_another_head_is_never_lost_unsaid(museum: Path) -> None:
+    """Somebody who measures in inches writes so into a head: the name below it, or the words above."""
+
+    def named(sheet: Any, at: dict[Any, int]) -> None:
+        sheet.cell(2, at["height [cm]"]).value = "height [in]"
+
+    def worded(sheet: Any, at: dict[Any, int]) -> None:
+        sheet.cell(1, at["height [cm]"]).value = "Height (inches)"
+
+    def noted(sheet: Any, at: dict[Any, int]) -> None:
+        sheet.insert_cols(4)
+        sheet.cell(1, 4).value = sheet.cell(2, 4).value = "Remarks (in pencil)"
+
+    for change, told in ((named, "call it 'height [cm]' again"), (worded, "say in, its name says cm")):
+        changed_heads(museum, "t.xlsx", change)
+        answer = taken_up(museum, "t.xlsx", "--dry-run")
+        assert {number: list(what) for number, what in answer["changes"]["changed"].items()} == {
+            OBJECTS[0]: ["width_m", "provenance"]
+        }
+        (fault,) = answer["refused"]
+        assert fault["row"] == 2
+        assert told in f"{fault['message']}; {fault['remedy']}"
+    changed_heads(museum, "t.xlsx", noted)
+    answer = taken_up(museum, "t.xlsx")
+    assert answer["refused"] == []
+    assert [inventory(museum)[number].height_m for number in OBJECTS[:2]] == [0.3, 0.4]
+
+
+def test_heads_that_were_sorted_in_are_asked_back_and_sorting_by_the_arrows_leaves_them(museum: Path) -> None:
+    def sort(sheet: Any, _at: dict[Any, int]) -> None:
+        rows = sorted(([cell.value for cell in row] for row in sheet.iter_rows(min_row=2)), key=lambda row: str(row[0]))
+        for line, row in enumerate(rows, 2):
+            for column, value in enumerate(row, 1):
+                sheet.cell(line, column).value = value
+
+    sheet = changed_heads(museum, "t.xlsx", sort)
+    assert re.fullmatch(rf"A2:[A-Z]+{sheet.max_row}", sheet.auto_filter.ref)
+    done = kouros("import", "t.xlsx", "--sheet", folder=museum)
+    assert done.returncode != 0
+    assert "row 2 does not have the names of the columns" in done.stderr
+    assert "mapping" not in done.stderr
+    assert inventory(museum)[OBJECTS[0]].height_m is None
+
+
+def test_a_sheet_comes_back_from_other_programs(museum: Path) -> None:
+    """Semicolons where numbers have a decimal comma; and of a kind that is not read nothing but how to save it."""
+    for mark in (";", "\t"):
+        rows = [["object_number", "gallery", "height_m"], [OBJECTS[0], "East", "1,5"]]
+        (museum / "ours.csv").write_text("\n".join(map(mark.join, rows)), encoding="utf-8-sig")
+        assert set(taken_up(museum, "ours.csv", "--dry-run")["changes"]["changed"]) == {OBJECTS[0]}
+    shutil.copy(museum / "s.xlsx", museum / "s.ods")
+    done = kouros("import", "s.ods", "--sheet", folder=museum)
+    assert done.returncode != 0
+    assert "save it as an .xlsx workbook" in done.stderr
+
+
+def test_a_word_that_is_none_of_those_and_a_second_row_are_told_as_the_sheet_shows_them(museum: Path) -> None:
+    def twice(sheet: Any, at: dict[Any, int]) -> None:
+        sheet.append([OBJECTS[0], "East", "Vase"])
+        sheet.cell(2, len(at) + 1).value = "support"
+        sheet.cell(row_of(sheet, OBJECTS[1]), len(at) + 1).value = "screwed to the wall"
+
+    sheet = changed_heads(museum, "t.xlsx", twice)
+    told = {fault["row"]: f"{fault['message']}; {fault['remedy']}" for fault in taken_up(museum, "t.xlsx")["refused"]}
+    first = row_of(sheet, OBJECTS[0])
+    assert f"was given in row {first} already" in told[sheet.max_row]
+    assert told[row_of(sheet, OBJECTS[1])].endswith("write one of these words")

@@ -266,7 +266,7 @@ def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
     return {
         "run": run,
         "object_number": item.object_number,
-        "title": item.title,
+        "title": item.called,
         "gallery": item.gallery,
         "case": item.case,
         "on_display": item.on_display,

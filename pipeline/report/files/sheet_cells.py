@@ -63,6 +63,8 @@ def headed(sheet: Worksheet, widths: Sequence[int], *, rows: int) -> None:
     sheet.page_setup.fitToWidth, sheet.page_setup.fitToHeight = 1, 0
     sheet.sheet_properties.pageSetUpPr.fitToPage = True
     sheet.print_title_rows = f"1:{rows}"
+    # With arrows on the last of the heads, sorting by them leaves both rows of heads where they are.
+    sheet.auto_filter.ref = f"A{rows}:{get_column_letter(len(widths))}{max(sheet.max_row, rows)}"
     if sheet.freeze_panes is None:
         sheet.freeze_panes = sheet.cell(rows + 1, 1)
 

@@ -3,7 +3,6 @@
 A letter that the fonts lack is a box, and the sheet says so.
 """
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
@@ -14,7 +13,7 @@ from pipeline.report.files.sheet_fonts import BOLD, LACKING, SANS, draw_text, re
 from pipeline.report.language import Language, _, moment, ngettext
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.walking import WalkRow, WalkView
-from pipeline.report.text import count, plain, short
+from pipeline.report.text import BREAKS, count, plain, short
 
 PAPERS = {"A4": (595.28, 841.89), "Letter": (612.0, 792.0)}
 """Sizes of paper, in points."""
@@ -36,8 +35,6 @@ _ROW = 120
 _REST = 12
 """Lines at most of the numbers of objects that need nothing."""
 _FOOT = 12.0
-_SPACES = re.compile(r"[^\S\u00a0\u202f]+")
-"""Where a line may break: not between a number and its unit."""
 _GREY = 0.42
 
 
@@ -243,7 +240,7 @@ class _Sheet:
         if fits(whole):
             return (whole,) if whole else ()
         lines, line = [], ""
-        for word in _SPACES.split(whole):
+        for word in BREAKS.split(whole):
             joined = f"{line} {word}" if line else word
             if fits(joined):
                 line = joined

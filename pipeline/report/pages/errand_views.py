@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from pipeline.mitigate.saying import ANCHORED
+from pipeline.mitigate.by_class import NAMED_FIRST
+from pipeline.mitigate.saying import ANCHORED, AT_BEST, HEAVIEST, SIZED
 from pipeline.planning.efforts import TRADES, EffortSpan
 from pipeline.planning.errands import Advised, Errand
 from pipeline.planning.plan import ErrandPlan
@@ -28,6 +29,9 @@ DOUBTFUL = 60
 
 FEW = 4
 """Objects that a line of the first layer names."""
+
+_HEAVIEST = re.compile(re.escape(HEAVIEST.partition(";")[0]).replace(re.escape("{heaviest}"), r"[^;]{1,40}?"))
+"""What a sentence says of the most that an object may weigh, with the number filled in."""
 
 _CLAUSE = re.compile(r"; |(?<=[^\W\d_A-Z])\. |(?<=\))\. |(?<=。)")
 """Where the words of an advice go on with why it holds, and what to mind."""
@@ -260,10 +264,21 @@ def _named(one: Advised, *, linked: bool) -> tuple[str, str, str]:
 
 
 def _brief(sentence: str) -> str:
-    """Return what is to be done, without why it holds and what to mind: the object's entry says that."""
+    """Return what is to be done, without why it holds: the object's entry says that.
+
+    What its numbers hang on stays: the most that an object may weigh is no number to buy a clamp by.
+    """
     # That its furniture is fastened first is an errand of its own.
     text = sentence.removeprefix(ANCHORED).strip() or sentence
-    return _CLAUSE.split(text, maxsplit=1)[0].rstrip(".") + "."
+    told = [_CLAUSE.split(text, maxsplit=1)[0].rstrip(".") + "."]
+    heaviest = _HEAVIEST.search(text)
+    if heaviest is not None:
+        told.append(f"{heaviest[0]}.")
+    if NAMED_FIRST in text:
+        told.append("Say first what it is.")
+    elif heaviest is not None or AT_BEST in text or SIZED in text:
+        told.append("Weigh it first.")
+    return " ".join(told)
 
 
 def _share(share: float) -> str:

@@ -14,7 +14,7 @@ from pipeline.report.pages.chances import name_of
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.plainly import times_weight, weighed_first
 from pipeline.report.pages.views import ObjectView, PageView, State, SurveyView, TaskView
-from pipeline.report.text import clean, short, words
+from pipeline.report.text import cased, clean, short, words
 from pipeline.report.units import Units, by_hand
 
 WORDS = 8
@@ -22,6 +22,9 @@ WORDS = 8
 
 _TITLE = 60
 """Characters of a title: two lines of its column."""
+
+_PLACE = 24
+"""Characters of a case before it: less than a line."""
 
 _ROUGHER = frozenset({"surface", "grip_pad"})
 """Measures by which an object slides less: more friction is better."""
@@ -44,8 +47,10 @@ class WalkRow:
 
     Attributes
     ----------
-    number, title : str
+    number : str
         Of the object.
+    title : str
+        Of the object, behind the case that it is in.
     what : str
         What to do, in `WORDS` words at most.
     numbers : str
@@ -188,7 +193,8 @@ def _photo(view: ObjectView) -> str:
 
 
 def _title(view: ObjectView) -> str:
-    return short(view.title, _TITLE)
+    """Return the title, behind the case that the object is in: whoever walks looks for that first."""
+    return " · ".join(filter(None, (view.place and short(cased(view.place), _PLACE), short(view.title, _TITLE))))
 
 
 def few(text: str) -> str:
