@@ -143,7 +143,7 @@ def test_fifty_objects_agree_with_plain_monte_carlo() -> None:
     ]
     chosen = upright[:: len(upright) // 50][:50]
     shaking = strong()
-    draws, samples = int(os.environ.get("KOUROS_DRAWS", "80")), 1024
+    draws, samples = int(os.environ.get("KOUROS_DRAWS", "40")), 1024
     mine = found(chosen, level(shaking), Sampling(samples, 2.0))
     rng = np.random.default_rng(11)
     fell = np.zeros(50)
