@@ -122,9 +122,12 @@ def small(settings: str, *, sampled: bool = True) -> str:
 
 
 def few_samples(settings: str, *, sampled: bool = True) -> str:
-    """Let settings draw as few samples as they can, or none: most of a small night is else spent on them."""
+    """Let settings draw as few samples as they can, or none, and no curves: most of a small night is spent on them."""
     assert "samples = 512" in settings
-    return settings.replace("samples = 512", f"samples = {64 if sampled else 0}")
+    assert 'fragility = "auto"' in settings
+    if sampled:
+        return settings.replace("samples = 512", "samples = 64")
+    return settings.replace("samples = 512", "samples = 0").replace('fragility = "auto"', "fragility = false")
 
 
 def one_thread(settings: str) -> str:

@@ -27,14 +27,17 @@ _ONE_AT_A_TIME = Lock()
 
 
 def kouros_process(
-    words: tuple[str, ...], folder: Path, environment: Mapping[str, str] | None = None
+    words: tuple[str, ...], folder: Path, environment: Mapping[str, str] | None = None, terminal: int | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """Run the command with words, in a folder, with the environment of now or another one."""
+    """Run the command with words, in a folder, with the environment of now or another one.
+
+    terminal : descriptor of a terminal at which it may ask; None for nobody who could be asked
+    """
     chosen = dict(os.environ if environment is None else environment)
     with TemporaryFile() as out, TemporaryFile() as err, _ONE_AT_A_TIME:
         server = _server()
         asked = {"words": words, "folder": str(folder), "environment": chosen, "out": out.fileno(), "err": err.fileno()}
-        asked |= {"process": os.getpid()}
+        asked |= {"process": os.getpid(), "terminal": terminal}
         print(json.dumps(asked), file=server.stdin, flush=True)
         assert server.stdout is not None
         code = int(server.stdout.readline())
@@ -87,8 +90,8 @@ def serve() -> dict[str, Any]:
 
 def become(asked: dict[str, Any]) -> None:
     """Make this process what a shell would have started."""
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
+    where = os.devnull if asked["terminal"] is None else f"/proc/{asked['process']}/fd/{asked['terminal']}"
+    os.dup2(os.open(where, os.O_RDONLY | os.O_NOCTTY), 0)
     sys.stdin = open(0, encoding="utf-8", closefd=False)  # noqa: SIM115 - the process's own
     os.environ.clear()
     os.environ.update(asked["environment"])

@@ -135,12 +135,14 @@ def _materials() -> frozenset[str]:
     return frozenset(fold(word) for row in table("materials") for word in row["words"].split("|"))
 
 
+@lru_cache(maxsize=65536)
 def _kin(word: str, of: RuleTable) -> tuple[str, str] | None:
     """Return the other word of the table that a word is kin to, and by which ending or head; None where it has none."""
     for end, other in _ENDINGS if len(word) >= _RELATED else ():
-        base = word.removesuffix(end) + other
-        if word.endswith(end) and base != word and base in of.by_word:
-            return base, f"-{end}"
+        if word.endswith(end):
+            base = word.removesuffix(end) + other
+            if base != word and base in of.by_word:
+                return base, f"-{end}"
     heads = (form[at:] for form in forms(word) for at in range(_BEFORE, len(form) - _HEAD + 1))
     head = next((one for one in heads if one in of.by_word), None)
     return None if head is None or IDEOGRAPH.search(word) else (head, head)

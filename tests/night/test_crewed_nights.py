@@ -14,13 +14,14 @@ from pipeline.night.unit_tasks import Assessments
 from pipeline.settings import Settings
 from pipeline.store.results import Stored
 from tests.museum import found, museum_of, night, vases
+from tests.soak import SOAK, soaked
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning"),
     pytest.mark.slow_file,
 ]
 
-OBJECTS = vases(galleries=4, each=2)
+OBJECTS = vases(galleries=4 if SOAK else 3, each=2)
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +37,7 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
 
 @pytest.fixture
 def shared(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Four batches of two objects, and others do the work whatever its size."""
+    """Three batches of two objects or more, and others do the work whatever its size."""
     for limit in ("BATCH", "WHOLE"):
         monkeypatch.setattr(scheduler, limit, 2)
     for module in (scheduler, staff):
@@ -102,6 +103,7 @@ def test_a_worker_with_several_threads(alone: Settings, tmp_path: Path) -> None:
     assert files(settings) == files(alone)
 
 
+@soaked
 @pytest.mark.usefixtures("shared")
 def test_a_worker_that_is_killed_in_the_middle_of_a_night_loses_nothing(
     alone: Settings, cluster: LocalCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
