@@ -17,7 +17,7 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
-from tempfile import TemporaryFile
+from tempfile import TemporaryDirectory, TemporaryFile
 from threading import Lock
 from typing import IO, Any, NoReturn
 
@@ -35,7 +35,8 @@ def kouros_process(
     """
     chosen = dict(os.environ if environment is None else environment)
     with TemporaryFile() as out, TemporaryFile() as err, _ONE_AT_A_TIME:
-        server = _server()
+        others = any(path not in sys.path for path in filter(None, chosen.get("PYTHONPATH", "").split(os.pathsep)))
+        server = _server("" if others else "night")
         asked = {"words": words, "folder": str(folder), "environment": chosen, "out": out.fileno(), "err": err.fileno()}
         asked |= {"process": os.getpid(), "terminal": terminal}
         print(json.dumps(asked), file=server.stdin, flush=True)
@@ -50,8 +51,9 @@ def _text(stream: IO[bytes]) -> str:
 
 
 @cache
-def _server() -> "subprocess.Popen[str]":
-    command = [sys.executable, "-m", "tests.warm"]
+def _server(what: str) -> "subprocess.Popen[str]":
+    """Return the process that is forked: for who brings packages one without a night, which asks what there is."""
+    command = [sys.executable, "-m", "tests.warm", what]
     path = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
     server = subprocess.Popen(
         command,
@@ -110,8 +112,12 @@ OWN_TIME = ("pipeline.execute.cluster", "pipeline.verification.self_measurement"
 """Left to each process: the latter asks at once which models other packages have installed, maybe for that one only."""
 
 
-def prepare() -> None:
-    """Do what every process of the command would do for itself: import, read a record, compile the templates."""
+def prepare(*, a_night: bool) -> None:
+    """Do what every process of the command would do for itself: import, read a record, compile the templates.
+
+    a_night : read tables, compile their patterns and load kernels too, by a night of which nothing stays but what it
+              found of motions: two seconds of each night, and of each import one
+    """
     import pipeline
     from pipeline.motions import read_motion
     from pipeline.report.pages.environment import environment
@@ -123,9 +129,15 @@ def prepare() -> None:
             import_module(module.name)
     for name in NIGHTLY:
         import_module(name)
-    read_motion(resource("site_motions", "demo"))
     # The first kernel brings numba's own tables.
     thin([(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)])
+    if a_night:
+        from tests.museum import ROWS, night, workspace
+
+        with TemporaryDirectory() as folder:
+            night(workspace(Path(folder), [*ROWS, "4,B,Painting,0.6,0.5,0.03"], furnished=True, sampled=True))
+    else:
+        read_motion(resource("site_motions", "demo"))
     templates = environment()
     for name in templates.list_templates():
         templates.get_template(name)
@@ -146,7 +158,7 @@ def end(code: int) -> NoReturn:
 if __name__ == "__main__":
     from pipeline.cli import main
 
-    prepare()
+    prepare(a_night=sys.argv[1] == "night")
     become(serve())
     try:
         main()
