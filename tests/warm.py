@@ -35,8 +35,7 @@ def kouros_process(
     """
     chosen = dict(os.environ if environment is None else environment)
     with TemporaryFile() as out, TemporaryFile() as err, _ONE_AT_A_TIME:
-        others = any(path not in sys.path for path in filter(None, chosen.get("PYTHONPATH", "").split(os.pathsep)))
-        server = _server("" if others else "night")
+        server = _server()
         asked = {"words": words, "folder": str(folder), "environment": chosen, "out": out.fileno(), "err": err.fileno()}
         asked |= {"process": os.getpid(), "terminal": terminal}
         print(json.dumps(asked), file=server.stdin, flush=True)
@@ -51,9 +50,8 @@ def _text(stream: IO[bytes]) -> str:
 
 
 @cache
-def _server(what: str) -> "subprocess.Popen[str]":
-    """Return the process that is forked: for who brings packages one without a night, which asks what there is."""
-    command = [sys.executable, "-m", "tests.warm", what]
+def _server() -> "subprocess.Popen[str]":
+    command = [sys.executable, "-m", "tests.warm"]
     path = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
     server = subprocess.Popen(
         command,
@@ -100,10 +98,32 @@ def become(asked: dict[str, Any]) -> None:
     os.chdir(asked["folder"])
     # A package that is installed for this process only.
     paths = filter(None, asked["environment"].get("PYTHONPATH", "").split(os.pathsep))
-    sys.path[:0] = [path for path in paths if path not in sys.path]
+    packages = [path for path in paths if path not in sys.path]
+    if packages:
+        sys.path[:0] = packages
+        forget_packages()
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.argv = ["kouros", *asked["words"]]
 
+
+def forget_packages() -> None:
+    """Forget what was found where there were no other packages, but for patterns and kernels, which none changes."""
+    from pipeline.collection.sources.registry import SOURCES
+    from pipeline.mitigate.measures import MEASURES
+    from pipeline.models import MODELS
+    from pipeline.report.pages.further import PAGES
+
+    for registry in (MODELS, MEASURES, SOURCES, PAGES):
+        registry._parts, registry._problems = None, ()
+    for name, module in list(sys.modules.items()):
+        if name.startswith("pipeline.") and name not in PATTERNS:
+            for found in vars(module).values():
+                if callable(getattr(found, "cache_clear", None)):
+                    found.cache_clear()
+
+
+PATTERNS = ("pipeline.analysis.evidence", "pipeline.analysis.footing", "pipeline.records.phrase", "pipeline.kernels")
+"""Whose caches hold nothing of other packages."""
 
 NIGHTLY = ("alembic.command", "obspy.signal", "openpyxl", "pandas", "psycopg", "pyarrow.parquet", "pywt")
 """What a night imports when it comes to it."""
@@ -112,17 +132,15 @@ OWN_TIME = ("pipeline.execute.cluster", "pipeline.verification.self_measurement"
 """Left to each process: the latter asks at once which models other packages have installed, maybe for that one only."""
 
 
-def prepare(*, a_night: bool) -> None:
-    """Do what every process of the command would do for itself: import, read a record, compile the templates.
+def prepare() -> None:
+    """Do what every process of the command would do for itself: import, read tables, compile patterns, load kernels.
 
-    a_night : read tables, compile their patterns and load kernels too, by a night of which nothing stays but what it
-              found of motions: two seconds of each night, and of each import one
+    The most by a night, of which nothing stays but what it found of motions: two seconds of each, of each import one.
     """
     import pipeline
-    from pipeline.motions import read_motion
     from pipeline.report.pages.environment import environment
     from pipeline.report.plots.svg import thin
-    from pipeline.resources import resource
+    from tests.museum import ROWS, night, workspace
 
     for module in walk_packages(pipeline.__path__, "pipeline."):
         if module.name not in OWN_TIME:
@@ -131,13 +149,8 @@ def prepare(*, a_night: bool) -> None:
         import_module(name)
     # The first kernel brings numba's own tables.
     thin([(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)])
-    if a_night:
-        from tests.museum import ROWS, night, workspace
-
-        with TemporaryDirectory() as folder:
-            night(workspace(Path(folder), [*ROWS, "4,B,Painting,0.6,0.5,0.03"], furnished=True, sampled=True))
-    else:
-        read_motion(resource("site_motions", "demo"))
+    with TemporaryDirectory() as folder:
+        night(workspace(Path(folder), [*ROWS, "4,B,Painting,0.6,0.5,0.03"], furnished=True, sampled=True))
     templates = environment()
     for name in templates.list_templates():
         templates.get_template(name)
@@ -158,7 +171,7 @@ def end(code: int) -> NoReturn:
 if __name__ == "__main__":
     from pipeline.cli import main
 
-    prepare(a_night=sys.argv[1] == "night")
+    prepare()
     become(serve())
     try:
         main()
