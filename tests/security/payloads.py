@@ -13,7 +13,7 @@ import openpyxl
 from pipeline.collection.mapping import PRESETS
 from pipeline.collection.record import KINDS
 
-ROWS = int(os.environ.get("KOUROS_HOSTILE", "100"))
+ROWS = int(os.environ.get("KOUROS_HOSTILE", "150"))
 """Two for each payload in each field; `make soak` takes a thousand."""
 
 BROKEN = 6
