@@ -154,8 +154,8 @@ def fit(objects: Sequence[Labelled]) -> Weights:
             field, _, named = sign.partition(": ")
             if field in SAYING and named in classes:
                 said.add((row * len(classes) + classes.index(named), SAYING.index(field)))
-    places = tuple(zip(*sorted(said), strict=True))
-    agreeing = csr_matrix((np.ones(len(said)), places), shape=(len(cases) * len(classes), len(SAYING)))
+    at, fields = np.transpose(sorted(said))
+    agreeing = csr_matrix((np.ones(len(said)), (at, fields)), shape=(len(cases) * len(classes), len(SAYING)))
     ridge = np.array([_penalty(sign, classes) for sign in columns])[:, None]
     size = len(columns) * len(classes)
     rows = np.arange(len(right))
