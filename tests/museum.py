@@ -95,11 +95,14 @@ def with_tables(file: Path) -> None:
         shutil.copyfile(_tables(), file)
 
 
-def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief", *, furnished: bool = False) -> Settings:
+def workspace(
+    folder: Path, rows: list[str] | None = None, site: str = "brief", *, furnished: bool = False, sampled: bool = False
+) -> Settings:
     """A small museum of its own in a folder; only what it finds of motions it has in common with all others.
 
     site : a folder, made by `own_site` where it is missing and no other is named, or a bundled site by its name
     furnished : what stands free is in furniture that nobody names, not on the floor: variants, half of a night
+    sampled : probabilities and curves are found, half of a night too
     """
     in_common(folder)
     if site == "brief" and not (folder / site).exists():
@@ -109,19 +112,22 @@ def workspace(folder: Path, rows: list[str] | None = None, site: str = "brief", 
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     file = folder / "kouros.toml"
     text = template(museum="Test", source="export.csv", mapping="mapping.toml", site=site)
-    file.write_text(small(text), encoding="utf-8")
+    file.write_text(small(text, sampled=sampled), encoding="utf-8")
     return load_settings(file) if furnished else on_the_floor(folder)
 
 
-def small(settings: str) -> str:
-    """Let the nights of settings cost as little as those of a few objects may: few samples, on one thread."""
-    return one_thread(few_samples(settings))
+def small(settings: str, *, sampled: bool = True) -> str:
+    """Let the nights of settings cost as little as those of a few objects may: few samples or none, on one thread."""
+    return one_thread(few_samples(settings, sampled=sampled))
 
 
-def few_samples(settings: str) -> str:
-    """Let settings draw as few samples as they can: most of a small night is else spent on them."""
+def few_samples(settings: str, *, sampled: bool = True) -> str:
+    """Let settings draw as few samples as they can, or none, and no curves: most of a small night is spent on them."""
     assert "samples = 512" in settings
-    return settings.replace("samples = 512", "samples = 64")
+    assert 'fragility = "auto"' in settings
+    if sampled:
+        return settings.replace("samples = 512", "samples = 64")
+    return settings.replace("samples = 512", "samples = 0").replace('fragility = "auto"', "fragility = false")
 
 
 def one_thread(settings: str) -> str:
@@ -200,15 +206,21 @@ def museum_of(
     own_charts: bool = False,
     threads: bool = False,
     furnished: bool = False,
+    sampled: bool = False,
 ) -> Settings:
-    """A museum of rows such as those of `vases`, with a copy of the bundled site; one thread works unless all shall."""
+    """A museum of rows such as those of `vases`, with a copy of the bundled site; one thread works unless all shall.
+
+    sampled : probabilities and curves are found, half of a night
+    """
     folder.mkdir(parents=True)
     with_tables(folder / DATABASE)
     if not own_charts:
         in_common(folder)
     write_collection(folder, objects)
     text = template(museum="Three rooms", source="collection.csv", mapping="kouros", site="site")
-    (folder / "kouros.toml").write_text(few_samples(text) if threads else small(text), encoding="utf-8")
+    (folder / "kouros.toml").write_text(
+        few_samples(text, sampled=sampled) if threads else small(text, sampled=sampled), encoding="utf-8"
+    )
     own_site(folder)
     return load_settings(folder / "kouros.toml") if furnished else on_the_floor(folder)
 

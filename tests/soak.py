@@ -5,10 +5,15 @@ from collections.abc import Iterable
 from random import Random
 from typing import TypeVar
 
+import pytest
+
 Case = TypeVar("Case")
 
 SOAK = bool(os.environ.get("KOUROS_SOAK"))
 """Whether all cases are taken."""
+
+soaked = pytest.mark.skipif(not SOAK, reason="long, and others of its kind are tried every day: make soak")
+"""Marks a test, or a case of one, that only `make soak` takes."""
 
 
 def some(cases: Iterable[Case], daily: int) -> list[Case]:

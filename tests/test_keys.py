@@ -4,6 +4,7 @@ import ast
 import shutil
 import sys
 from collections.abc import Iterator
+from functools import cache
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -87,6 +88,12 @@ class Imports(ast.NodeVisitor):
         self.generic_visit(node)
 
 
+@cache
+def imports(module: str, file: Path) -> tuple[str, ...]:
+    """Return what a module imports, which several walks ask for."""
+    return tuple(sorted(Imports(module, file).names))
+
+
 def reached(roots: tuple[str, ...]) -> tuple[dict[Path, str], dict[str, str]]:
     """Return the files of the package and the libraries that are imported from some modules, and from where."""
     files: dict[Path, str] = {}
@@ -104,7 +111,7 @@ def reached(roots: tuple[str, ...]) -> tuple[dict[Path, str], dict[str, str]]:
             file = file_of(module)
             if file is not None and file not in files:
                 files[file] = by
-                todo += [(one, module) for one in sorted(Imports(module, file).names)]
+                todo += [(one, module) for one in imports(module, file)]
     return files, libraries
 
 

@@ -17,7 +17,7 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
-from tempfile import TemporaryFile
+from tempfile import TemporaryDirectory, TemporaryFile
 from threading import Lock
 from typing import IO, Any, NoReturn
 
@@ -27,14 +27,17 @@ _ONE_AT_A_TIME = Lock()
 
 
 def kouros_process(
-    words: tuple[str, ...], folder: Path, environment: Mapping[str, str] | None = None
+    words: tuple[str, ...], folder: Path, environment: Mapping[str, str] | None = None, terminal: int | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """Run the command with words, in a folder, with the environment of now or another one."""
+    """Run the command with words, in a folder, with the environment of now or another one.
+
+    terminal : descriptor of a terminal at which it may ask; None for nobody who could be asked
+    """
     chosen = dict(os.environ if environment is None else environment)
     with TemporaryFile() as out, TemporaryFile() as err, _ONE_AT_A_TIME:
         server = _server()
         asked = {"words": words, "folder": str(folder), "environment": chosen, "out": out.fileno(), "err": err.fileno()}
-        asked |= {"process": os.getpid()}
+        asked |= {"process": os.getpid(), "terminal": terminal}
         print(json.dumps(asked), file=server.stdin, flush=True)
         assert server.stdout is not None
         code = int(server.stdout.readline())
@@ -87,18 +90,40 @@ def serve() -> dict[str, Any]:
 
 def become(asked: dict[str, Any]) -> None:
     """Make this process what a shell would have started."""
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
+    where = os.devnull if asked["terminal"] is None else f"/proc/{asked['process']}/fd/{asked['terminal']}"
+    os.dup2(os.open(where, os.O_RDONLY | os.O_NOCTTY), 0)
     sys.stdin = open(0, encoding="utf-8", closefd=False)  # noqa: SIM115 - the process's own
     os.environ.clear()
     os.environ.update(asked["environment"])
     os.chdir(asked["folder"])
     # A package that is installed for this process only.
     paths = filter(None, asked["environment"].get("PYTHONPATH", "").split(os.pathsep))
-    sys.path[:0] = [path for path in paths if path not in sys.path]
+    packages = [path for path in paths if path not in sys.path]
+    if packages:
+        sys.path[:0] = packages
+        forget_packages()
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.argv = ["kouros", *asked["words"]]
 
+
+def forget_packages() -> None:
+    """Forget what was found where there were no other packages, but for patterns and kernels, which none changes."""
+    from pipeline.collection.sources.registry import SOURCES
+    from pipeline.mitigate.measures import MEASURES
+    from pipeline.models import MODELS
+    from pipeline.report.pages.further import PAGES
+
+    for registry in (MODELS, MEASURES, SOURCES, PAGES):
+        registry._parts, registry._problems = None, ()
+    for name, module in list(sys.modules.items()):
+        if name.startswith("pipeline.") and name not in PATTERNS:
+            for found in vars(module).values():
+                if callable(getattr(found, "cache_clear", None)):
+                    found.cache_clear()
+
+
+PATTERNS = ("pipeline.analysis.evidence", "pipeline.analysis.footing", "pipeline.records.phrase", "pipeline.kernels")
+"""Whose caches hold nothing of other packages."""
 
 NIGHTLY = ("alembic.command", "obspy.signal", "openpyxl", "pandas", "psycopg", "pyarrow.parquet", "pywt")
 """What a night imports when it comes to it."""
@@ -108,21 +133,24 @@ OWN_TIME = ("pipeline.execute.cluster", "pipeline.verification.self_measurement"
 
 
 def prepare() -> None:
-    """Do what every process of the command would do for itself: import, read a record, compile the templates."""
+    """Do what every process of the command would do for itself: import, read tables, compile patterns, load kernels.
+
+    The most by a night, of which nothing stays but what it found of motions: two seconds of each, of each import one.
+    """
     import pipeline
-    from pipeline.motions import read_motion
     from pipeline.report.pages.environment import environment
     from pipeline.report.plots.svg import thin
-    from pipeline.resources import resource
+    from tests.museum import ROWS, night, workspace
 
     for module in walk_packages(pipeline.__path__, "pipeline."):
         if module.name not in OWN_TIME:
             import_module(module.name)
     for name in NIGHTLY:
         import_module(name)
-    read_motion(resource("site_motions", "demo"))
     # The first kernel brings numba's own tables.
     thin([(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)])
+    with TemporaryDirectory() as folder:
+        night(workspace(Path(folder), [*ROWS, "4,B,Painting,0.6,0.5,0.03"], furnished=True, sampled=True))
     templates = environment()
     for name in templates.list_templates():
         templates.get_template(name)

@@ -144,6 +144,7 @@ def _materials() -> frozenset[str]:
     return frozenset(fold(word) for row in table("materials") for word in row["words"].split("|"))
 
 
+@lru_cache(maxsize=65536)
 def _kin(word: str, of: RuleTable) -> tuple[str, str] | None:
     """Return the other word of the table that a word is kin to, and by which ending or head; None where it has none."""
     for end, other in _ENDINGS if len(word) >= _RELATED else ():

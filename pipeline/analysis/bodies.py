@@ -6,6 +6,7 @@ from dataclasses import replace
 from pipeline.analysis.mounts import MountGuess
 from pipeline.records import Estimate, Furniture, Item, Support
 from pipeline.records import phrases as say
+from pipeline.tables.assumed import READ
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.body_rows import ON_EDGE, PAIR, SCREEN, STANDS, BodyRow, body_of
 
@@ -95,7 +96,7 @@ def body(
     stands = support in (Support.FREESTANDING, Support.FASTENED) and (mount is None or mount.stands)
     if row.own or not stands:
         return None
-    text = f"{item.object_name} {item.title}"
+    text = f"{item.object_name[:READ]} {item.title[:READ]}"
     found = body_of(text, words.partition(":")[0], row.name, material.name, item.height_m or 0.0)
     # How thick a frame is says nothing of what an altarpiece stands on.
     return None if found is not None and found.body in ON_EDGE and item.depth_m is None else found

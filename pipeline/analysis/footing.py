@@ -17,6 +17,7 @@ from pipeline.errors import InputError
 from pipeline.records import ContactPolygon, Estimate, Item, Origin
 from pipeline.records import phrases as say
 from pipeline.tables import table
+from pipeline.tables.assumed import READ
 from pipeline.tables.rows import Entries, Number, Optional, any_of, checked
 
 ALONG = {
@@ -228,7 +229,7 @@ def rolling(item: Item) -> Bearing | None:
 
 
 def _named(item: Item) -> Bearing | None:
-    return _told(f"{item.object_name}; {item.title}; {item.medium}; {item.displayed}")
+    return _told("; ".join(text[:READ] for text in (item.object_name, item.title, item.medium, item.displayed)))
 
 
 # Asked of an object when it is classed, and by each measure that is tried on it.

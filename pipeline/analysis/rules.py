@@ -19,14 +19,17 @@ from pipeline.analysis.rule_table import (
     HEAD_FIRST,
     IDEOGRAPH,
     WORD,
+    Rule,
     RuleMatch,
     RuleTable,
     fold,
     identifiers,
     rules,
     singular,
+    stuff,
 )
 from pipeline.records import Item
+from pipeline.tables.assumed import READ
 
 _INVERTED = re.compile(r"\s*((?:[^\W\d_]|[ '-])+?)\s*,\s*((?:[^\W\d_]|[ '-])+?)\s*")
 """What lists of names put behind what it is an own kind of: Desk, Drop-front; Lamp, Hanging."""
@@ -54,8 +57,6 @@ _NOT_THINGS = (
     *("earthenware", "stoneware", "case"),
 )
 """What a medium calls stuff, a part, or many: silver plate, plate glass, a metal case, 22 groups of cards."""
-_READ = 10_000
-"""Characters of a text that are searched for the name of the thing."""
 PICTURES = ("framed",)
 """Classes of what hangs flat whatever its title says."""
 FORMATS = ("screen", "handscroll")
@@ -172,11 +173,11 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     # What a table of classifications knows, such as silkscreen, is no screen.
     called = _kinds(item.object_name)
     if name is None and item.object_name and not any(rule.kinds & called for rule in of.classed):
-        text, share = akin(item.object_name[:_READ], of)
+        text, share = akin(item.object_name[:READ], of)
         kin = _named(item, text, kinds, of)
         name = _headed(item, of) if kin is None else replace(kin, share=share)
     elif name is not None and item.object_name:
-        share = _believed_at(item.object_name[:_READ], name.word, of)
+        share = _believed_at(item.object_name[:READ], name.word, of)
         name = replace(name, share=min(name.share, share, homographs().get(name.word, 1.0)))
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
@@ -225,8 +226,8 @@ def _one_of_types(title: RuleMatch, item: Item, of: RuleTable) -> bool:
     """Whether a title names a type behind the first of several that semicolons part: "gem; ewer", of an ewer."""
     if title.rule.object_class in PICTURES or ";" not in item.object_name:
         return False
-    titled = _candidates(item.title[:_READ], of)
-    return any(word in titled for part in item.object_name[:_READ].split(";")[1:] for word in _candidates(part, of)[:1])
+    titled = _candidates(item.title[:READ], of)
+    return any(word in titled for part in item.object_name[:READ].split(";")[1:] for word in _candidates(part, of)[:1])
 
 
 def _narrows(title: RuleMatch, name: RuleMatch, item: Item) -> bool:
@@ -253,15 +254,22 @@ def _wordless(item: Item, kinds: frozenset[str], of: RuleTable) -> tuple[RuleMat
         if rule.kinds & kinds and rule.fits(item):
             classed = RuleMatch(rule)
             break
-    for rule in of.wordless[:-1]:
-        if rule.fits(item):
+    for rule in _made(of, stuff(item.material, item.medium)):
+        if all(shape(item) for shape in rule.shapes):
             return classed, RuleMatch(rule)
     return classed, None
 
 
+# Many objects are made of the same.
+@lru_cache(maxsize=16384)
+def _made(of: RuleTable, made: str) -> tuple[Rule, ...]:
+    """Return the rules that ask for neither name nor classification whose medium is in a text, but for the last."""
+    return tuple(rule for rule in of.wordless[:-1] if rule.medium is None or rule.medium.search(made))
+
+
 def _made_as(item: Item, kinds: frozenset[str], of: RuleTable) -> RuleMatch | None:
     """Return the rule of a medium that is the name of a thing: porcelain charger with terra sigillata; no list is."""
-    head = [] if re.search(r"[,;\d]", item.medium) else BREAK.split(fold(item.medium[:_READ]), maxsplit=1)[0].split()
+    head = [] if re.search(r"[,;\d]", item.medium) else BREAK.split(fold(item.medium[:READ]), maxsplit=1)[0].split()
     found = _named(item, " ".join(head), kinds, of) if 2 <= len(head) <= 4 else None
     if found is None or found.rule.object_class not in _THINGS or found.word in _NOT_THINGS:
         return None
@@ -275,7 +283,7 @@ def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable, *, alone
     """
     if not text:
         return None
-    for word in _candidates(text[:_READ], of):
+    for word in _candidates(text[:READ], of):
         rules_of = of.by_word.get(word) or of.by_ending.get(word[1:], ())
         for rule in rules_of:
             if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
@@ -292,7 +300,7 @@ def _is_bare(item: Item) -> bool:
 
 def _headed(item: Item, of: RuleTable) -> RuleMatch | None:
     """Return the rule of what things are classed as by the last word of an object name or the first."""
-    words = WORD.findall(next(_parts(_plain(item.object_name[:_READ])), ""))
+    words = WORD.findall(next(_parts(_plain(item.object_name[:READ])), ""))
     for word in (*words[-1:], *heads_of(words[-1]), *words[:1]) if words else ():
         classed, _ = _wordless(item, _kinds(word), of)
         if classed is not None:

@@ -104,7 +104,8 @@ def _smoothest(row: Array, order: int, count: float, size: float) -> tuple[float
         # A corner of what stands there is in so many differences.
         parted = starts[1:] - ends[:-1] >= order
         starts, ends = starts[np.append(True, parted)], ends[np.append(parted, True)]
-        for a, b in zip(starts, ends, strict=True):
+        long = ends - starts >= LEAST
+        for a, b in zip(starts[long], ends[long], strict=True):
             inside = differences[a:b][quiet[a:b]]
             if inside.size < LEAST:
                 continue
@@ -112,7 +113,11 @@ def _smoothest(row: Array, order: int, count: float, size: float) -> tuple[float
             left, right = differences[max(0, a - beside) : a], differences[b : b + beside]
             if min(left.size, right.size) < BESIDE // 2:
                 continue
-            ratio = min(float(np.median(left)), float(np.median(right))) / max(float(inside.max()), floor)
+            largest = max(float(inside.max()), floor)
+            # No median is beyond the largest, which costs a tenth: most stretches cannot be smoother than the best.
+            if min(float(left.max()), float(right.max())) < 0.999 * best[0] * largest:
+                continue
+            ratio = min(float(np.median(left)), float(np.median(right))) / largest
             one = (min(ratio, SMOOTHER), int(b - a) + 1, int(a) + 1, ratio)
             if one > best and _shaken(row, a, b + order, beside, size):
                 best = one

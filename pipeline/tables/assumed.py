@@ -18,6 +18,9 @@ from pipeline.tables.surface_rows import met_on, surfaces_in
 UNKNOWN = "unknown"
 """The material of an object whose record names none that the table knows."""
 
+READ = 10_000
+"""Characters of a text that are searched for what a thing is, and what it is made of or stands on."""
+
 _Assumed = TypeVar("_Assumed", bound=AssumedRow)
 _Pair = TypeVar("_Pair", bound=PairRow)
 
@@ -65,7 +68,7 @@ class AssumedValues:
         Material or None
             None where there is none.
         """
-        return _material_in(self, text)
+        return _material_in(self, text[:READ])
 
     def materials_in(self, text: str) -> tuple[Material, ...]:
         """Return all materials that a text names, in the museum's words; none where there is none."""

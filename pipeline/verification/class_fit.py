@@ -149,19 +149,21 @@ def fit(objects: Sequence[Labelled]) -> Weights:
     shown = csr_matrix((np.ones(len(indices)), indices, starts), shape=(len(cases), len(columns)))
     right = np.array([label for _, label, _ in cases])
     weight = np.array([w for _, _, w in cases])
-    agreeing = np.zeros((len(SAYING), len(cases), len(classes)))
+    said: set[tuple[int, int]] = set()
     for row, (signs, _, _) in enumerate(cases):
         for sign in signs:
             field, _, named = sign.partition(": ")
             if field in SAYING and named in classes:
-                agreeing[SAYING.index(field), row, classes.index(named)] = 1.0
+                said.add((row * len(classes) + classes.index(named), SAYING.index(field)))
+    at, fields = np.transpose(sorted(said))
+    agreeing = csr_matrix((np.ones(len(said)), (at, fields)), shape=(len(cases) * len(classes), len(SAYING)))
     ridge = np.array([_penalty(sign, classes) for sign in columns])[:, None]
     size = len(columns) * len(classes)
     rows = np.arange(len(right))
 
     def loss(x: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
         of_sign, of_field = x[:size].reshape(len(columns), len(classes)), x[size:]
-        scores = shown @ of_sign + np.tensordot(of_field, agreeing, axes=1)
+        scores = shown @ of_sign + (agreeing @ of_field).reshape(len(cases), len(classes))
         scores -= scores.max(axis=1, keepdims=True)
         away = np.exp(scores)
         total = away.sum(axis=1)
@@ -171,9 +173,7 @@ def fit(objects: Sequence[Labelled]) -> Weights:
         away *= weight[:, None]
         value += 0.5 * float(np.sum(ridge * of_sign**2)) + 0.5 * RIDGE["agree"] * float(of_field @ of_field)
         slope = shown.T @ away + ridge * of_sign
-        return value, np.concatenate(
-            [slope.ravel(), np.tensordot(agreeing, away, axes=([1, 2], [0, 1])) + RIDGE["agree"] * of_field]
-        )
+        return value, np.concatenate([slope.ravel(), agreeing.T @ away.ravel() + RIDGE["agree"] * of_field])
 
     start = np.zeros(size + len(SAYING))
     # Threads of BLAS wait for each other more than they compute on vectors of this size.

@@ -18,6 +18,7 @@ from pipeline.motions import read_motion
 from pipeline.quantities import Array
 from pipeline.records import Estimate, Finding, Furniture, Item, Motion, Numerics, Origin, Scene, Support, Verdict
 from pipeline.resources import resource
+from tests.soak import SOAK
 
 BLOCK = Item("1", "G", title="Block", support=Support.FREESTANDING, furniture=Furniture.FLOOR,
              height_m=0.3, base_width_m=0.3, base_depth_m=0.3,
@@ -154,7 +155,7 @@ def test_ranges_of_everything_at_random(motions: tuple[Motion, ...], charts: Cha
         replace(PAINTING, damping=None, suspension_length_m=None),
     )  # fmt: skip
     scenes = []
-    for i in range(140):
+    for i in range(140 if SOAK else 63):
         kind, size = kinds[i % len(kinds)], float(np.exp(rng.normal(0.0, 0.5)))
         sizes = {name: getattr(kind, name) and getattr(kind, name) * size for name in ("height_m", "base_width_m")}
         turned = None if i % 3 else float(rng.uniform(0.0, 360.0))

@@ -7,6 +7,7 @@ from pipeline.quantities import Array, G
 from pipeline.records import Excitation
 from tests.benchmarks.common import shaking, strongest
 from tests.benchmarks.native import IN_C, compiled, friction, oscillator, rocking, standing, swing
+from tests.soak import soaked
 
 
 def test_the_c_program_gives_the_kernels_results() -> None:
@@ -45,7 +46,7 @@ def uneven(n: int) -> dict[str, Array]:
     }
 
 
-@pytest.mark.parametrize(("lift", "samples"), [(1.0, 4000), (4.0, 1500)])
+@pytest.mark.parametrize(("lift", "samples"), [pytest.param(1.0, 4000, marks=soaked), (4.0, 1500)])
 def test_a_standing_body_does_the_same_in_c(lift: float, samples: int) -> None:
     """The same falls and landings; other numbers apart by 8e-8 at most, measured, and 1e-5 is granted as to rocking.
 

@@ -17,6 +17,8 @@ from tests.motions.test_components import knet
 import obspy  # after what imports it in a way that warns of nothing
 from obspy.io.sac import SACTrace
 
+from tests.soak import SOAK, some
+
 SENSITIVITY = 213807.0
 """Counts per m/s2 of the demonstration's instrument, about: the samples below are in m/s2."""
 
@@ -41,7 +43,7 @@ def turned(folder: Path) -> list[float | str | None]:
     return [one.orientation for one in sorted(record.components.values(), key=lambda one: one.axis)]
 
 
-@pytest.mark.parametrize("form", ["SAC", "SLIST", "TSPAIR", "GSE2", "SH_ASC", "AH"])
+@pytest.mark.parametrize("form", some(["SAC", "SLIST", "TSPAIR", "GSE2", "SH_ASC", "AH"], 3))
 def test_what_says_no_unit_is_asked(tmp_path: Path, real: list[obspy.Trace], form: str) -> None:
     """GSE2 holds integers: mm/s2 here."""
     new = tmp_path / "new"
@@ -113,8 +115,9 @@ def test_of_kiknet_the_surface_is_taken_and_the_borehole_told(tmp_path: Path) ->
     assert all(name[-1] == "2" for name in record.files)
 
 
-@pytest.mark.parametrize("guess", [(), ("--guess",)])
-@pytest.mark.parametrize("surface", ["00", "10"])
+@pytest.mark.parametrize(
+    ("surface", "guess"), [("00", ()), ("10", ("--guess",)), *(SOAK * [("00", ("--guess",)), ("10", ())])]
+)
 def test_of_two_depths_by_stationxml_the_surface_is_taken(tmp_path: Path, surface: str, guess: tuple[str, ...]) -> None:
     """The same instrument under two location codes, 120 m below one another; the folder is given as one."""
     new = tmp_path / "new"

@@ -70,7 +70,7 @@ def museum(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A museum after two nights, with a decision, a newer export, a sheet, and reports beyond [retention]."""
     folder = tmp_path_factory.mktemp("museum")
     synthesise("sine", ["amplitude=1.2", "frequency=2", "cycles=2"], folder / "shaking")
-    workspace(folder, site="shaking")
+    workspace(folder, site="shaking", sampled=True)
     for name in ("run", "run"):
         assert say(folder, name)[0] == 0
     assert say(folder, "decide", "1", "accept", "--why", "a test", "--who", "A")[0] == 0

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
 import pytest
 
 from pipeline.quantities import LENGTHS
+from tests.warm import kouros_process
 
 EXPORT = "Inventarnummer;Objekt-ID;Titel;Standort;Höhe\n" + "".join(
     f"V {at}.1;{900 + at};Krug;Saal {1 + at % 3};{12 + at},5\n" for at in range(20)
 )
-COMMAND = (sys.executable, "-c", "from pipeline.cli import main; main()", "-q", "import", "krug.csv", "--guess")
+COMMAND = ("-q", "import", "krug.csv", "--guess")
 
 
 @pytest.fixture
@@ -34,7 +33,7 @@ def test_a_terminal_is_asked(answers: str, number: str, unit: str, folder: Path)
     ours, theirs = os.openpty()
     try:
         os.write(ours, answers.encode())
-        done = subprocess.run(COMMAND, cwd=folder, stdin=theirs, capture_output=True, text=True, check=False)
+        done = kouros_process(COMMAND, folder, terminal=theirs)
     finally:
         os.close(ours)
         os.close(theirs)
@@ -48,7 +47,7 @@ def test_a_terminal_is_asked(answers: str, number: str, unit: str, folder: Path)
 
 
 def test_without_a_terminal_it_is_listed(folder: Path) -> None:
-    done = subprocess.run(COMMAND, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    done = kouros_process(COMMAND, folder)
     assert done.returncode == 0, done.stderr
     assert "to choose: which column has the object numbers? 'Inventarnummer' is taken; --choose" in done.stdout
     assert "to choose: in which unit" in done.stdout

@@ -21,6 +21,7 @@ from pipeline.collection.measured import fill
 from pipeline.collection.reading import read_items
 from pipeline.records import Item
 from pipeline.verification.class_scores import MANNER
+from tests.soak import some
 
 FOLDER = Path(__file__).parents[1] / "data" / "collections" / "in_the_style_of"
 MARK = "true: "
@@ -70,7 +71,7 @@ def right(mark: dict[str, str], item: Item) -> bool:
     return tall and plan == pytest.approx(marked, rel=NEAR)
 
 
-@pytest.mark.parametrize(("name", "sizes", "classes", "manners"), CASES)
+@pytest.mark.parametrize(("name", "sizes", "classes", "manners"), some(CASES, 4))
 def test_rows_are_read_and_classed(name: str, sizes: int, classes: int, manners: int, tmp_path: Path) -> None:
     """Of forty rows each: as many sizes and classes right as were reached, none wrong unsaid, the display."""
     found = read(name, tmp_path)

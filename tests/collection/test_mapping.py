@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import jsonschema
@@ -103,6 +104,12 @@ SCHEMA_SEES = [
 ]
 
 
+@cache
+def schema() -> jsonschema.Draft202012Validator:
+    """The schema of mappings, made once: that it is one itself is tested once."""
+    return jsonschema.Draft202012Validator(mapping_schema())
+
+
 @pytest.mark.parametrize("fault", FAULTS)
 def test_faults_are_named_with_file_key_and_remedy(fault: str, make_mapping: Make) -> None:
     before, after, message = FAULTS[fault]
@@ -117,7 +124,7 @@ def test_faults_are_named_with_file_key_and_remedy(fault: str, make_mapping: Mak
 def test_the_schema_refuses_what_python_refuses(fault: str) -> None:
     before, after, _ = FAULTS[fault]
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(tomllib.loads(MAPPING.replace(before, after)), mapping_schema())
+        schema().validate(tomllib.loads(MAPPING.replace(before, after)))
 
 
 def test_the_published_schema_is_the_models() -> None:
@@ -129,7 +136,7 @@ def test_the_published_schema_is_the_models() -> None:
 @pytest.mark.parametrize("name", preset_names())
 def test_presets_load_and_fit_the_schema(name: str) -> None:
     assert load_mapping(name).name == name
-    jsonschema.validate(tomllib.loads((PRESETS / f"{name}.toml").read_text(encoding="utf-8")), mapping_schema())
+    schema().validate(tomllib.loads((PRESETS / f"{name}.toml").read_text(encoding="utf-8")))
 
 
 def test_the_template_sheet_has_every_field_under_its_own_name() -> None:

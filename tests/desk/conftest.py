@@ -35,7 +35,7 @@ def night_behind() -> Path:
         folder = around / "museum"
         hostile = {**vases(1, 1)[0], "object_number": HOSTILE, "title": "<script>document.title='pwned'</script>"}
         stored = {**vases(1, 1)[0], "object_number": "S.1", "title": "Jug in the store", "gallery": "Storage"}
-        museum_of(folder, [*vases(), *PAINTINGS, hostile, stored], furnished=True)
+        museum_of(folder, [*vases(), *PAINTINGS, hostile, stored], furnished=True, sampled=True)
         edit(folder / "kouros.toml", 'length = "cm"', 'length = "in"')
         night(load_settings(folder / "kouros.toml"))
 

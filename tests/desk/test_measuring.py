@@ -16,7 +16,7 @@ from pipeline.settings import load_settings
 from tests.museum import museum_of, night, short_site
 
 from .test_paths import complaints, engine_of, press, see, sign
-from .visiting import Visitor, address_of, desk, served
+from .visiting import Visitor, address_of, served
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -34,7 +34,7 @@ def running(museum: Path, browser: Chrome) -> Iterator[str]:
         "Emulation.setDeviceMetricsOverride",
         {"width": WIDTH, "height": 844, "deviceScaleFactor": 2, "mobile": True},
     )
-    with desk(museum) as address:
+    with served(museum) as address:
         yield address
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 

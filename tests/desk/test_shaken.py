@@ -19,10 +19,11 @@ from pipeline.store.event_reports import event_reports
 from pipeline.tools.event import TypedShaking, answer_event
 from pipeline.tools.event_folders import EVENTS, kept_events
 from tests.report.test_accessible import violations_here
+from tests.soak import soaked
 
 from .conftest import HOSTILE
 from .test_paths import complaints, press, see
-from .visiting import Visitor, desk, served
+from .visiting import Visitor, served
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -42,7 +43,7 @@ def shaken(museum: Path) -> Path:
 @pytest.fixture
 def running(shaken: Path, browser: Chrome) -> Iterator[str]:
     browser.set_window_size(1300, 900)
-    with desk(shaken) as address:
+    with served(shaken) as address:
         yield address
 
 
@@ -184,7 +185,7 @@ def test_hostile_numbers_are_text_and_can_be_reported(shaken: Path) -> None:
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize("width", [1300, 390])
+@pytest.mark.parametrize("width", [pytest.param(1300, marks=soaked), 390])
 def test_pages_fit_and_break_no_rule_of_wcag(running: str, browser: Chrome, shaken: Path, width: int) -> None:
     browser.execute_cdp_cmd(
         "Emulation.setDeviceMetricsOverride", {"width": width, "height": 844, "deviceScaleFactor": 1, "mobile": False}

@@ -35,7 +35,7 @@ def night(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A museum after a night."""
     folder = tmp_path_factory.mktemp("museum")
     synthesise("sine", ["amplitude=4", "frequency=1.5", "cycles=3"], folder / "shaking")
-    workspace(folder, site="shaking", furnished=True)
+    workspace(folder, site="shaking", furnished=True, sampled=True)
     assert say(folder, "run")[0] == 0
     return folder
 
@@ -279,7 +279,7 @@ def test_a_drill_is_said_to_be_one_and_is_timed(museum: Path) -> None:
 
 
 def test_without_a_run_it_says_how_to_make_one(tmp_path: Path) -> None:
-    workspace(tmp_path, furnished=True)
+    workspace(tmp_path, furnished=True, sampled=True)
     with pytest.raises(StoreError, match="make one with `kouros run`"):
         ask(tmp_path, MAP)
 

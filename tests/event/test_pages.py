@@ -15,6 +15,7 @@ from tests.event.messages import DATA
 from tests.event.test_command import ask, museum, night
 from tests.report.conftest import browser
 from tests.report.test_accessible import violations
+from tests.soak import soaked
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -29,7 +30,7 @@ def answer(museum: Path) -> Path:
     return ask(museum, DATA / "loma_prieta_grid.xml").folder
 
 
-@pytest.mark.parametrize("width", [1300, 390])
+@pytest.mark.parametrize("width", [pytest.param(1300, marks=soaked), 390])
 def test_page_and_sheets_fit_and_break_no_rule_of_wcag(answer: Path, browser: Chrome, width: int) -> None:
     size = {"width": width, "height": 844, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)

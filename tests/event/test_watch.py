@@ -21,6 +21,7 @@ from pipeline.tools.event_watch import PATIENCE, SETTLED, DropFolder
 from tests.cli.test_dry_runs import digest, say
 from tests.event.messages import DATA, PARK, alert
 from tests.event.test_command import MAP, museum, night, shown
+from tests.soak import soaked
 
 __all__ = ["museum", "night"]
 
@@ -146,7 +147,7 @@ def test_without_a_run_it_waits_for_one(museum: Path, drop: Path) -> None:
     assert came.done is not None
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(("number", "code"), [pytest.param(signal.SIGINT, 130, marks=soaked), (signal.SIGTERM, 143)])
 def test_it_goes_on_until_it_is_stopped_and_ends_cleanly(
     number: signal.Signals, code: int, museum: Path, drop: Path
 ) -> None:

@@ -15,6 +15,7 @@ from pipeline.motions import read_motion
 from pipeline.quantities import G
 from pipeline.records import Furniture, Item, Motion, Support
 from pipeline.resources import resource
+from tests.soak import soaked
 
 from .scenes import BLOCK, HEAVY, STUMP, TOWER, solve
 
@@ -139,7 +140,7 @@ def test_room_is_what_an_implicit_integration_slides(motions: Sequence[Motion], 
     assert far <= advice.parameters["clearance"] <= 1.1 * far + 0.011
 
 
-@pytest.mark.parametrize(("which", "length"), [(0, 0.6), (1, 2.0)])
+@pytest.mark.parametrize(("which", "length"), [pytest.param(0, 0.6, marks=soaked), (1, 2.0)])
 def test_what_hangs_from_above_swings_as_a_string(motions: Sequence[Motion], which: int, length: float) -> None:
     """A chandelier of 120 kg may swing in a hall: the largest distance of its middle, and a tenth more."""
     lamp = Item("L", "G", title="Chandelier", object_name="chandelier", medium="brass", support=Support.SUSPENDED,

@@ -79,7 +79,7 @@ def museum(tmp_path: Path) -> Path:
     (folder / "collection.csv").write_text(COLLECTION, encoding="utf-8")
     sine = ("motions", "synthesise", "sine", "amplitude=5", "frequency=1", "cycles=3", "--out", "site")
     assert kouros(folder, *sine).returncode == 0
-    text = small(template(museum="M", source="collection.csv", mapping="kouros", site="site"))
+    text = small(template(museum="M", source="collection.csv", mapping="kouros", site="site"), sampled=False)
     (folder / "kouros.toml").write_text(text, encoding="utf-8")
     return folder
 

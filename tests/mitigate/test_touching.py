@@ -18,6 +18,7 @@ from pipeline.report.pages.plainly import plain_measure
 from pipeline.report.units import Units
 from pipeline.tables import table
 from pipeline.tables.finish_rows import finishes_in
+from tests.soak import some
 
 from .scenes import BLOCK, TOWER, demo_motion, solve
 
@@ -91,7 +92,7 @@ def test_nothing_is_screwed_into_glass(motion: Motion) -> None:
     assert {text.partition(":")[0] for text in said} >= {"Padded pins", "Padded clips", "Padded clamps"}
 
 
-@pytest.mark.parametrize("furniture", [Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF])
+@pytest.mark.parametrize("furniture", some([Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF], 2))
 def test_brackets_need_a_wall(motion: Motion, furniture: Furniture) -> None:
     """A cabinet on the floor is fixed to the wall behind it; a casket in a case has none."""
     cabinet = replace(TOWER, title="Cabinet", object_name="cabinet", mass_kg=20.0, height_m=1.0)

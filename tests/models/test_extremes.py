@@ -45,7 +45,7 @@ def work(answers: Queue[Any]) -> None:
             for row in range(len(next(iter(columns.values())))):
                 one = {k: v[row] for k, v in columns.items()}
                 for tail in (None, 0.0, 5.0) if label == "plain" else (None,):
-                    if not SOAK and chance.random() > 1.0 / 3.0:
+                    if not SOAK and chance.random() > 1.0 / 6.0:
                         continue
                     case = f"{model.name} {one} {extra} under {label}, tail {tail}"
                     answers.put((case, None))

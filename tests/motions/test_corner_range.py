@@ -1,5 +1,7 @@
 """What hangs on the corner: closed forms of tones, the same record processed anew, and agencies' own versions."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from pipeline.motions.site import with_corner
 from pipeline.resources import resource
 from tests.motions.formats.conftest import agency_file
 from tests.motions.test_raw_to_agency import agency, site
+from tests.soak import some
 
 __all__ = ["agency", "agency_file", "site"]
 
@@ -40,8 +43,15 @@ def test_what_is_written_is_read():
     assert corner_range_of(("high-pass 0.1 Hz",)) is None
 
 
-@pytest.mark.parametrize("changes", [{}, {"window_s": [5.0, 30.0], "accept": {"cut_off": "a test"}}, {"scale": 2.5}])
-@pytest.mark.parametrize("name", ["weitchpec", "redwood"])
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    some(
+        product(
+            ["weitchpec", "redwood"], [{}, {"window_s": [5.0, 30.0], "accept": {"cut_off": "a test"}}, {"scale": 2.5}]
+        ),
+        3,
+    ),
+)
 def test_the_range_is_that_of_the_record_processed_at_other_corners(site, name, changes):
     file = site(name, highpass_hz=0.15, **changes)
     told = corner_range_of(read_motion(file)[0].steps)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import product
 
 import numpy as np
 import obspy
@@ -11,6 +12,7 @@ import pytest
 from pipeline.motions.quality import alike, clipped, cut_off, one_sided
 from pipeline.resources import resource
 from tests.motions.formats.conftest import agency_file
+from tests.soak import some
 
 __all__ = ["agency_file"]
 
@@ -124,9 +126,10 @@ def test_a_limit_that_wavers_by_a_count_is_found(record):
     assert clipped(spoilt * 4.6e-6, dt, CHANNELS) is not None
 
 
-@pytest.mark.parametrize("dt", [0.005, 0.01, 0.02])
-@pytest.mark.parametrize("step", [0.0, 1e-5, 1e-3, 1e-2])
-@pytest.mark.parametrize("phase", [0.0, 0.3, np.pi / 8, np.pi / 4, np.pi / 2])
+@pytest.mark.parametrize(
+    ("phase", "step", "dt"),
+    some(product([0.0, 0.3, np.pi / 8, np.pi / 4, np.pi / 2], [0.0, 1e-5, 1e-3, 1e-2], [0.005, 0.01, 0.02]), 15),
+)
 def test_sines_and_sweeps_are_not_clipped(dt, step, phase):
     """From 200 samples a period to three, also in step with the sampling, where every crest has the same samples.
 

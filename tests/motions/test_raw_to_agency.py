@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 import shutil
+from itertools import product
 
 import numpy as np
 import obspy
@@ -22,6 +23,7 @@ from pipeline.motions.reading import read_record
 from pipeline.quantities import G
 from pipeline.records import Motion
 from tests.motions.formats.conftest import agency_file
+from tests.soak import some
 
 __all__ = ["agency_file"]
 
@@ -134,9 +136,7 @@ def test_with_a_corner_chosen_without_the_agency(site, agency, name, pre_event):
     assert f"high-pass corner {corner.frequency:.4g} Hz chosen" in " | ".join(motion.steps)
 
 
-@pytest.mark.parametrize("name", RECORDS)
-@pytest.mark.parametrize("begin", [0.0, 0.15, 0.3])
-@pytest.mark.parametrize("end", [0.0, 0.15, 0.3])
+@pytest.mark.parametrize(("end", "begin", "name"), some(product([0.0, 0.15, 0.3], [0.0, 0.15, 0.3], RECORDS), 6))
 def test_the_corner_does_not_hang_on_the_window(site, name, begin, end):
     """Begun later and ended earlier by shares of what is before and after the strong shaking.
 

@@ -9,6 +9,7 @@ from pipeline.motions.manifest import load_manifest
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL
 from pipeline.motions.writing import write_site
 from pipeline.tools.strong_motion import process
+from tests.soak import some
 
 from .conftest import DT, tone
 
@@ -43,7 +44,7 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", some(CASES, 5))
 def test_bit_for_bit(three, write_manifest, tmp_path, case):
     three(*map(shaken, (1.0, 2.0, 0.5)))
     folder = write_manifest(**CASES[case])

@@ -14,19 +14,22 @@ from pipeline.night.unit_tasks import Assessments
 from pipeline.settings import Settings
 from pipeline.store.results import Stored
 from tests.museum import found, museum_of, night, vases
+from tests.soak import SOAK, soaked
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning"),
     pytest.mark.slow_file,
 ]
 
-OBJECTS = vases(galleries=4, each=2)
+OBJECTS = vases(galleries=4 if SOAK else 3, each=2)
 
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """The museum after a night of this process alone, whose BLAS has two threads, where that of workers has one."""
-    settings = museum_of(tmp_path_factory.mktemp("crews") / "alone", OBJECTS, threads=True, furnished=True)
+    settings = museum_of(
+        tmp_path_factory.mktemp("crews") / "alone", OBJECTS, threads=True, furnished=True, sampled=True
+    )
     with threadpool_limits(limits=2, user_api="blas"):
         night(settings)
     return settings
@@ -34,7 +37,7 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
 
 @pytest.fixture
 def shared(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Four batches of two objects, and others do the work whatever its size."""
+    """Three batches of two objects or more, and others do the work whatever its size."""
     for limit in ("BATCH", "WHOLE"):
         monkeypatch.setattr(scheduler, limit, 2)
     for module in (scheduler, staff):
@@ -60,7 +63,7 @@ def files(settings: Settings) -> dict[str, bytes]:
 def test_two_processes_of_this_machine(alone: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # Those that assess draw the pages as well.
     monkeypatch.setattr(staff, "SHOWN", len(OBJECTS))
-    settings = museum_of(tmp_path / "two", OBJECTS, threads=True, furnished=True)
+    settings = museum_of(tmp_path / "two", OBJECTS, threads=True, furnished=True, sampled=True)
     execution = settings.execution.model_copy(update={"processes": 2})
     settings = settings.model_copy(update={"execution": execution})
     assert night(settings).fresh == len(OBJECTS)
@@ -77,7 +80,7 @@ def cluster() -> Iterator[LocalCluster]:
 
 def of_a_cluster(folder: Path, cluster: LocalCluster) -> Settings:
     """The museum after a night whose work a cluster did."""
-    settings = museum_of(folder, OBJECTS, threads=True, furnished=True)
+    settings = museum_of(folder, OBJECTS, threads=True, furnished=True, sampled=True)
     execution = settings.execution.model_copy(update={"cluster": cluster.scheduler_address})
     settings = settings.model_copy(update={"execution": execution})
     assert night(settings).fresh == len(OBJECTS)
@@ -100,12 +103,13 @@ def test_a_worker_with_several_threads(alone: Settings, tmp_path: Path) -> None:
     assert files(settings) == files(alone)
 
 
+@soaked
 @pytest.mark.usefixtures("shared")
 def test_a_worker_that_is_killed_in_the_middle_of_a_night_loses_nothing(
     alone: Settings, cluster: LocalCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Killed when the first results are stored, while both workers are at later ones."""
-    settings = museum_of(tmp_path / "killed", OBJECTS, threads=True, furnished=True)
+    settings = museum_of(tmp_path / "killed", OBJECTS, threads=True, furnished=True, sampled=True)
     execution = settings.execution.model_copy(update={"cluster": cluster.scheduler_address})
     settings = settings.model_copy(update={"execution": execution})
     killed: list[int] = []

@@ -52,8 +52,9 @@ ROUNDS = int(os.environ.get("KOUROS_OBJECTS", "1"))
 def records() -> list[dict[str, Any]]:
     """Every class with every support: complete, without each size, empty, and with numbers at the ends or left out."""
     chance, out = Random(20261122), []
-    for kind, name in NAMES.items():
-        for support in ("", *Support):
+    for at, (kind, name) in enumerate(NAMES.items()):
+        # Every second support where there is little time.
+        for support in ("", *Support) if SOAK else ("", *Support)[at % 2 :: 2]:
             whole = {"object_name": name, "support": str(support), **SIZES, **STUFF.get(kind, {})}
             some = [whole, {**whole, "height_m": ""}, {**whole, "width_m": "", "depth_m": ""}]
             some.append({**whole, "base_width_m": 0.2, "base_depth_m": 0.2, "mass_kg": 8.0})
@@ -134,7 +135,7 @@ def test_every_measure_at_the_ends_of_its_range_is_run_on_every_class(tmp_path: 
         for number, measure in enumerate(own_catalogue().installable)
         for end in ("low", "high")
         # In turn where there is little time.
-        if SOAK or (at + number) % 18 == (0 if end == "low" else 9)
+        if SOAK or (at + number) % 36 == (0 if end == "low" else 18)
     ]
     rows = [
         {"object_number": f"{at}", "gallery": f"Room {at % 5}", "title": f"No. {at}", "object_name": "Thing", **SIZES}

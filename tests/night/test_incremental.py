@@ -90,8 +90,8 @@ def test_a_night_that_finds_only_what_changed_equals_one_from_nothing(
         history.append(getattr(change, "__name__", "cut_off"))
         change()
         after = exported(museum.night())
-        # Every day what is wrong after one change is looked for after the next too: a night from nothing is dear.
-        if not SOAK and number % 2 == 0:
+        # Every day what is wrong after one change is looked for after the last: a night from nothing is dear.
+        if not SOAK and number < EDITS - 1:
             continue
         fresh = exported(museum.from_nothing(tmp_path / f"fresh-{number}"))
         for name, rows in fresh.items():

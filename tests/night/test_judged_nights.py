@@ -67,7 +67,7 @@ def museum(folder: Path, *levels: tuple[str, float | None, tuple[float, ...]], c
         if years is not None:
             text = text.replace(f'name = "{name}"\n', f'name = "{name}"\nreturn_period_years = {years:g}\n', 1)
     manifest.write_text(text)
-    workspace(folder, [], site=str(folder / "site"), furnished=True)
+    workspace(folder, [], site=str(folder / "site"), furnished=True, sampled=True)
     (folder / "export.csv").write_text("\n".join([HEADER, *(rows or ROWS)]) + "\n", encoding="utf-8")
     mapping = folder / "mapping.toml"
     mapping.write_text(mapping.read_text() + EXTRA, encoding="utf-8")

@@ -23,6 +23,7 @@ from pipeline.records import DecisionKind
 from pipeline.tools.decisions import Wish, decide
 from tests.museum import SILENT
 from tests.night.changing import FRICTION, FURNITURE, ISOLATORS, RULES, Changing, leave_out_pages, measures, vessels
+from tests.soak import soaked
 
 
 @dataclass
@@ -270,27 +271,27 @@ def accepted(museum: Changing) -> None:
     [
         (lambda _: None, NOTHING),
         (rules, ALL),
-        (limits, ALL),
-        (isolator, ALL),
+        pytest.param(limits, ALL, marks=soaked),
+        pytest.param(isolator, ALL, marks=soaked),
         (friction, ALL),
-        (stiffer, ALL),
-        (wider_furniture, ALL),
+        pytest.param(stiffer, ALL, marks=soaked),
+        pytest.param(wider_furniture, ALL, marks=soaked),
         (another_name, ALL),
-        (setting("classes", '"classes.csv"'), ALL),
+        pytest.param(setting("classes", '"classes.csv"'), ALL, marks=soaked),
         # A setting of each group.
         (setting("name", '"Another museum"'), PAGES),
         (setting("value_per_c", "500.0"), PAGES),
         (neither, NOTHING),
         (setting("azimuth_step", "30.0"), SHOWN),
-        (setting("fidelity", '"history"'), SHOWN),
-        (setting("fragility", "true"), SHOWN),
+        pytest.param(setting("fidelity", '"history"'), SHOWN, marks=soaked),
+        pytest.param(setting("fragility", "true"), SHOWN, marks=soaked),
         (setting("stores", "true"), (3, 0, 1)),
         (setting("length", '"in"'), PAGES),
         (setting("survey", "true"), ALL),
         # Motions.
         (record, SHAKEN),
         (scale, SHAKEN),
-        (v_max, SHOWN),
+        pytest.param(v_max, SHOWN, marks=soaked),
         # What is stored shares no page with what is stored on another floor.
         (upstairs, (4, 1, 5)),
         # Records.
@@ -304,7 +305,7 @@ def accepted(museum: Changing) -> None:
         (loan, (0, 0, 1)),
         (off_display, (0, 1, 2)),
         (written_otherwise, NOTHING),
-        (mapping, ALL),
+        pytest.param(mapping, ALL, marks=soaked),
         # House rules: what each comes to for an object alone, and what it matches in no other way.
         (house_rule('gallery = "B"', "clearance_m = 0.07"), (4, 1, 2)),
         (house_rule('number = "014"', "clearance_m = 0.07"), (1, 0, 1)),
@@ -343,7 +344,9 @@ def versions() -> Iterator[None]:
         digest.cache_clear()
 
 
-@pytest.mark.parametrize(("library", "expected"), [("numpy", ALL), ("numba", ALL), ("jinja2", PAGES)])
+@pytest.mark.parametrize(
+    ("library", "expected"), [("numpy", ALL), pytest.param("numba", ALL, marks=soaked), ("jinja2", PAGES)]
+)
 @pytest.mark.usefixtures("versions")
 def test_what_another_version_of_a_library_costs(
     museum: Changing, done: Done, monkeypatch: pytest.MonkeyPatch, library: str, expected: tuple[int, int, int]

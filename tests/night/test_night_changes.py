@@ -19,6 +19,7 @@ from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.rerender import compare
 from tests.museum import SILENT, edit, kouros, short_site, workspace
 from tests.night.changing import leave_out_pages, vessels
+from tests.soak import soaked
 
 pytestmark = pytest.mark.slow_file
 
@@ -27,7 +28,7 @@ OWN = "rule,class,aat,classification,words,medium,shape,why\nours,bust,,,vase,,,
 FLOOR = '\n[[floor]]\nname = "2"\nheight_ratio = 0.5\nperiod_s = 0.4\n'
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
+@pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=soaked)])
 def database(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """A database of the test's own: the museum's file, or one on the server."""
     monkeypatch.delenv(DATABASE_VARIABLE, raising=False)

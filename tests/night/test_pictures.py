@@ -25,6 +25,7 @@ from pipeline.records import Chart, ChartFigure, Motion, Numerics, Silent
 from pipeline.records.numerics import SCAN
 from pipeline.resources import resource
 from pipeline.settings import KEPT, Settings
+from tests.soak import some
 
 pytestmark = pytest.mark.slow_file
 
@@ -88,7 +89,7 @@ def pictured(
     return record, draw(record, Context(Threads(2), charts=ChartCache()))
 
 
-@pytest.mark.parametrize("name", ["sliding", "swing", "isolator"])
+@pytest.mark.parametrize("name", some(["sliding", "swing", "isolator"], 2))
 def test_a_figure_is_as_far_off_as_it_says(pictured: tuple[Motion, dict[str, Chart]], name: str) -> None:
     """Straight lines between its points at 60 fresh places against histories: within the error told in 98 of 100.
 

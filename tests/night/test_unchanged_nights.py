@@ -40,7 +40,9 @@ def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     return made
 
 
-def test_an_unchanged_night_finds_nothing_anew_and_shows_the_same_files(settings: Settings) -> None:
+def test_an_unchanged_night_finds_nothing_anew_and_shows_the_same_files(tmp_path: Path) -> None:
+    settings = museum_of(tmp_path / "museum", vases(), sampled=True)
+    night(settings)
     before = settings.path("reports").joinpath("latest").resolve()
     summary = night(settings)
     assert summary.report is not None

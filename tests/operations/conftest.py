@@ -57,8 +57,8 @@ def shaking() -> Path:
 def museum(tmp_path: Path, shaking: Path) -> Callable[..., Path]:
     """Write a museum of three objects, or of other rows, with more settings."""
 
-    def make(rows: list[str] | None = None, more: str = "", folder: Path = tmp_path) -> Path:
-        workspace(folder, rows, site=str(shaking))
+    def make(rows: list[str] | None = None, more: str = "", folder: Path = tmp_path, *, sampled: bool = False) -> Path:
+        workspace(folder, rows, site=str(shaking), sampled=sampled)
         file = folder / "kouros.toml"
         text = file.read_text(encoding="utf-8").split("\n[logs]")[0]
         file.write_text(text + "\n" + more, encoding="utf-8")

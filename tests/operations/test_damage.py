@@ -37,8 +37,9 @@ from tests.museum import small
 pytestmark = pytest.mark.slow_file
 
 SILENT = Console(quiet=True)
-DAMAGES = int(os.environ.get("KOUROS_DAMAGES", "45"))
-"""Every day as many as damage one file of each kind; `make soak` does a thousand."""
+DAILY = "KOUROS_DAMAGES" not in os.environ
+DAMAGES = int(os.environ.get("KOUROS_DAMAGES", "21"))
+"""Every day as many as damage nearly one file of each kind; `make soak` does a thousand."""
 SEED = 17
 DATABASE = "kouros.sqlite"
 EXPORTS = ("findings.csv", "objects.csv", "recommendations.csv")
@@ -172,7 +173,10 @@ class Damage:
 
 
 def damages(folder: Path) -> Iterator[Damage]:
-    """Yield the damages: two of three to the database, mostly not cut, the others to every other file in turn."""
+    """Yield the damages: two of three to the database, mostly not cut, the others to every other file in turn.
+
+    Every day it is one of three to the database.
+    """
     others = kept_files(folder)
     Random(SEED).shuffle(others)
     # A file of each kind comes before a second one of any: folder and ending tell what wrote it.
@@ -184,7 +188,14 @@ def damages(folder: Path) -> Iterator[Damage]:
         seen[kind] += 1
     others.sort(key=turns.__getitem__)
     for number in range(DAMAGES):
-        if number % 3:
+        if DAILY:
+            turn = number // 3
+            yield (
+                Damage(number, others[(number - turn) % len(others)], KINDS[number % 4])
+                if number % 3 < 2
+                else Damage(number, Path(DATABASE), KINDS[turn % 4])
+            )
+        elif number % 3:
             yield Damage(number, Path(DATABASE), KINDS[number // 3 % 4 if number % 3 == 1 else number // 3 % 2])
         else:
             yield Damage(number, others[number // 3 % len(others)], KINDS[number // 3 % 4])

@@ -24,13 +24,13 @@ STRIDE = int(os.environ.get("KOUROS_CALLS", "0"))
 """One call of so many is disturbed, from the first on; `make soak` disturbs each; 0: the sample of every day."""
 
 SAMPLE = {
-    "run": {"kill": [29, 360], "full disk": [47, 600]},
-    "import": {"kill": [17, 120], "full disk": [24, 120]},
-    "decide": {"kill": [20, 120], "full disk": [13, 120]},
-    "prune": {"kill": [150, 800]},
-    "report": {"kill": [90, 800], "full disk": [60, 800]},
+    "run": {"kill": [29, 720], "full disk": [647, 1200]},
+    "import": {"kill": [17, 240], "full disk": [24, 240]},
+    "decide": {"kill": [20, 240], "full disk": [13, 240]},
+    "prune": {"kill": [150, 1600]},
+    "report": {"kill": [90, 1600], "full disk": [60, 1600]},
 }
-"""Where the first is disturbed, and after how many the next: some thousand calls in all, of which a dozen or two."""
+"""Where the first is disturbed, and after how many the next: some thousand calls in all, of which about a dozen."""
 
 NIGHT = 600
 """Calls that the night has at least, for it does have an import, a report and a database, and tidies up."""

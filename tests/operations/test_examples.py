@@ -58,6 +58,23 @@ def placed(museum: Museum, tmp_path: Path) -> Callable[[str], str]:
     return place
 
 
+@pytest.fixture
+def started(placed: Callable[[str], str], tmp_path: Path) -> Callable[[], subprocess.CompletedProcess[str]]:
+    """Let the program only note how it is started, and return what then does that: the line of cron starts it cold."""
+    program, notes = tmp_path / "bin" / "kouros", tmp_path / "bin" / "noted"
+    there = shlex.quote(str(notes))
+    lines = ["#!/bin/sh", f'{{ pwd; printf "%s\\0" "$@"; }} > {there}', f"env -0 > {there}.env", ""]
+    program.write_text("\n".join(lines), encoding="utf-8")
+
+    def start() -> subprocess.CompletedProcess[str]:
+        folder, _, words = notes.read_text(encoding="utf-8").partition("\n")
+        known = dict(pair.split("=", 1) for pair in notes.with_name("noted.env").read_text("utf-8").split("\0") if pair)
+        notes.unlink()
+        return kouros_process(tuple(words.split("\0")[:-1]), Path(folder), known)
+
+    return start
+
+
 def a_night_was_made(folder: Path) -> bool:
     # The database is that of the file of secrets.
     return (folder / "reports" / "latest" / "index.html").is_file() and (folder / "night.sqlite").is_file()
@@ -128,26 +145,29 @@ def test_the_units_of_a_workspace_name_this_machines_places(tmp_path: Path, name
     assert "kouros.service" not in checked.stderr
 
 
-def test_what_systemd_would_start(placed: Callable[[str], str], tmp_path: Path) -> None:
+def test_what_systemd_would_start(
+    placed: Callable[[str], str], started: Callable[[], subprocess.CompletedProcess[str]], tmp_path: Path
+) -> None:
     unit = ConfigParser(interpolation=None, strict=False)
     unit.optionxform = str  # type: ignore[assignment,method-assign]
     unit.read_string(placed("kouros.service"))
     service = unit["Service"]
     secrets = Path(service["EnvironmentFile"].removeprefix("-")).read_text(encoding="utf-8").split()
-    done = subprocess.run(
+    subprocess.run(
         shlex.split(service["ExecStart"]),
         cwd=service["WorkingDirectory"],
         env={"PATH": "/usr/bin:/bin", "HOME": str(tmp_path), **dict(pair.split("=", 1) for pair in secrets)},
-        capture_output=True,
-        text=True,
-        check=False,
+        check=True,
     )
+    done = started()
     assert done.returncode == 0, done.stderr
     assert all(line.startswith('{"time": ') for line in done.stderr.splitlines())
     assert a_night_was_made(tmp_path)
 
 
-def test_what_airflow_would_start(placed: Callable[[str], str], tmp_path: Path) -> None:
+def test_what_airflow_would_start(
+    placed: Callable[[str], str], started: Callable[[], subprocess.CompletedProcess[str]], tmp_path: Path
+) -> None:
     """Without Airflow: the file is Python, and the commands of its tasks do what they say, by bash."""
     calls = [node for node in ast.walk(ast.parse(placed("kouros_airflow.py"))) if isinstance(node, ast.Call)]
     tasks = [
@@ -157,14 +177,13 @@ def test_what_airflow_would_start(placed: Callable[[str], str], tmp_path: Path) 
     ]
     assert [task["task_id"] for task in tasks] == ["check", "run"]
     for task in tasks:
-        done = subprocess.run(
+        subprocess.run(
             ["bash", "-c", task["bash_command"]],
             cwd=task["cwd"],
             env=environment({"KOUROS_DATABASE": "night.sqlite"}),
-            capture_output=True,
-            text=True,
-            check=False,
+            check=True,
         )
+        done = started()
         assert done.returncode == 0, done.stderr
     assert a_night_was_made(tmp_path)
 

@@ -19,6 +19,7 @@ from pipeline.operations.stopping import Stopped, uninterrupted
 from pipeline.settings import load_settings
 from pipeline.tools.initialise import demonstration
 from tests.museum import workspace
+from tests.soak import soaked
 
 from .conftest import command, environment, validate, within
 from .disturbed import Nights, last, rows, whole
@@ -66,7 +67,8 @@ def museum(nights: Nights, tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("number", "code", "words"), [(signal.SIGINT, 130, "by hand"), (signal.SIGTERM, 143, "SIGTERM")]
+    ("number", "code", "words"),
+    [pytest.param(signal.SIGINT, 130, "by hand", marks=soaked), (signal.SIGTERM, 143, "SIGTERM")],
 )
 def test_a_night_that_is_stopped_says_so_and_goes_on(
     museum: Path, nights: Nights, tmp_path: Path, number: int, code: int, words: str

@@ -67,7 +67,7 @@ def landing(folder: Path) -> str:
 
 def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch: pytest.MonkeyPatch) -> None:
     """A first night, a changed object, an unchanged night, a lost export, a shrunken one, a part; then tidy again."""
-    folder = museum([LOW, *ROWS[1:]], settings_for(server))
+    folder = museum([LOW, *ROWS[1:]], settings_for(server), sampled=True)
     monkeypatch.setenv("NO_PROXY", "127.0.0.1")
 
     def kouros(*words: str) -> subprocess.CompletedProcess[str]:
@@ -100,7 +100,7 @@ def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch:
     assert f'href="{again["report"]}"' in landing(folder)
     assert server.heard == []  # nothing changed: there was nothing before
 
-    museum([TIPPING, *ROWS[1:]], settings_for(server))
+    museum([TIPPING, *ROWS[1:]], settings_for(server), sampled=True)
     second = kouros("run", "--json")
     assert second.returncode == 0, second.stderr
     validate(json.loads(second.stdout), "run-summary")
@@ -147,7 +147,7 @@ def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch:
     assert f'href="{good["report"]}"' in page
     assert before == {p.name: p.read_bytes() for p in (folder / "reports" / "latest").rglob("*.*") if p.is_file()}
 
-    museum(ROWS[:1], settings_for(server))
+    museum(ROWS[:1], settings_for(server), sampled=True)
     shrunk = kouros("run")
     assert shrunk.returncode == 7
     told = json.loads(server.heard[2][1])
@@ -155,7 +155,7 @@ def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch:
     assert (told["event"], told["exit_code"]) == ("shrunk", 7)
     assert told["message"].startswith("The run published nothing: ")
 
-    museum([TIPPING, *ROWS[1:]], settings_for(server))
+    museum([TIPPING, *ROWS[1:]], settings_for(server), sampled=True)
     for words in (["--object", "2"], ["--dry-run"]):
         kouros("run", *words)
     assert standing(folder)["state"] == "failed"  # none of these is the night

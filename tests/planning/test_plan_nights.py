@@ -27,7 +27,7 @@ from tests.museum import edit, kouros, museum_of, night, on_the_floor, vases
 def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """A museum after its first night: vases that stand on the floor, one beside the other."""
     folder = tmp_path_factory.mktemp("plans") / "museum"
-    museum_of(folder, vases())
+    museum_of(folder, vases(), sampled=True)
     return on_the_floor(folder)
 
 
@@ -133,7 +133,7 @@ def test_what_cannot_be_asked(settings: Settings, report: Path, tmp_path: Path) 
 
 
 def test_before_the_first_night_the_remedy_is_told(tmp_path: Path) -> None:
-    fresh = museum_of(tmp_path / "museum", vases())
+    fresh = museum_of(tmp_path / "museum", vases(), sampled=True)
     with pytest.raises(StoreError, match=r"no finished run of the whole collection.*kouros run"):
         plan_museum(open_workspace(fresh), EffortLimits())
     (fresh.home / "kouros.toml").write_text(
@@ -149,7 +149,7 @@ def test_before_the_first_night_the_remedy_is_told(tmp_path: Path) -> None:
 
 
 def test_a_night_that_asks_for_no_probabilities_has_no_plan(tmp_path: Path) -> None:
-    made = museum_of(tmp_path / "museum", vases(1, 2))
+    made = museum_of(tmp_path / "museum", vases(1, 2), sampled=True)
     edit(made.home / "kouros.toml", "samples = 64", "samples = 0")
     summary = night(load_settings(made.home / "kouros.toml"))
     assert summary.report is not None
@@ -160,7 +160,7 @@ def test_a_night_that_asks_for_no_probabilities_has_no_plan(tmp_path: Path) -> N
 
 
 def test_what_people_accepted_is_no_errand_and_a_report_drawn_again_has_the_same_plan(tmp_path: Path) -> None:
-    museum_of(tmp_path / "museum", vases(2, 3))
+    museum_of(tmp_path / "museum", vases(2, 3), sampled=True)
     settings = on_the_floor(tmp_path / "museum")
     first = night(settings).report
     assert first is not None

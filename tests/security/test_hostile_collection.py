@@ -97,7 +97,7 @@ def night(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Night]:
         payload = payloads.payloads(canary.url + "/", around / OUTSIDE)
         table = list(payloads.rows(payload))
         text = small(template(museum=payload[0], source="export.csv", mapping="kouros", site="site"))
-        (folder / "kouros.toml").write_text(text.replace("fragility = true", "fragility = false"), encoding="utf-8")
+        (folder / "kouros.toml").write_text(text.replace('fragility = "auto"', "fragility = false"), encoding="utf-8")
         payloads.write_csv(folder / "export.csv", table)
         outside = tree(around, folder)
         first = within(folder, "-v", "run")

@@ -17,6 +17,7 @@ from pipeline.records import Furniture, Item, Sampling, Scene
 from pipeline.verification import sampling_cost
 from pipeline.verification.sampling_cost import NUMBERS, SamplingCost, sampling_costs
 from pipeline.verification.tradeoff import Tradeoff
+from tests.soak import soaked
 
 pytestmark = pytest.mark.slow_file
 
@@ -77,6 +78,7 @@ def test_errors_keep_what_they_state(found: list[SamplingCost]) -> None:
         assert one.rms < 1.5 * one.stated
 
 
+@soaked
 def test_errors_fall_with_the_number_of_samples(scenes: list[Scene], monkeypatch: pytest.MonkeyPatch) -> None:
     """Eight times the samples: a third of the error where they were independent, less as they are balanced.
 

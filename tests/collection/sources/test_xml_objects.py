@@ -20,6 +20,7 @@ from pipeline.collection.guessing.source import columns_in
 from pipeline.collection.reading import read_items
 from pipeline.collection.sources.xml_objects import record_path
 from pipeline.night.importing import bundled_collection
+from tests.soak import SOAK
 
 Thing = tuple[str, str, str, float, float, str, bool]
 THINGS: tuple[Thing, ...] = (
@@ -305,7 +306,7 @@ def test_files_that_are_no_tables_are_named(head: bytes, said: str, tmp_path: Pa
 
 def test_a_real_collection_is_the_same_as_from_its_csv(tmp_path: Path) -> None:
     with bundled_collection().open(encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))[:400]
+        rows = list(csv.DictReader(stream))[: 400 if SOAK else 130]
     whole, text = tmp_path / "objects.csv", ""
     with whole.open("w", encoding="utf-8", newline="") as out:
         writer = csv.DictWriter(out, rows[0])
@@ -316,5 +317,5 @@ def test_a_real_collection_is_the_same_as_from_its_csv(tmp_path: Path) -> None:
         text += f"<record>{''.join(cells)}</record>\n"
     (tmp_path / "objects.xml").write_text(f"{XML}<export><day>2024</day><all>{text}</all></export>", encoding="utf-8")
     told = [read_items(path, guess(path).mapping).items for path in (whole, tmp_path / "objects.xml")]
-    assert len(told[0]) > 390
+    assert len(told[0]) > 0.97 * len(rows)
     assert told[0] == told[1]
