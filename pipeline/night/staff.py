@@ -27,7 +27,8 @@ _MODELS: dict[str, str] = {"swing_3d": "spherical.spherical_batch", "unhooking":
 
 def _model(name: str, angle: float | None) -> None:
     model = model_named(name)
-    sample = {name: low for name, (low, _) in model.trials.ranges.items()} | model.trials.sample
+    sample = {name: low for name, (low, _) in model.trials.ranges.items()}
+    sample.update(model.trials.sample)
     model.run(sine(1.0, 2.0, 1.0).excitation(angle), prepare(model, sample), 1, False)
 
 
