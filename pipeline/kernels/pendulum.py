@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from pipeline.kernels import CUT, FIRST, UNRESOLVED, bare, fused, inlined, kernel
-from pipeline.kernels.lanes import LANES, lanes, same_steps
+from pipeline.kernels.lanes import LANES, in_order, lanes, same_steps
 from pipeline.kernels.roots import narrowed, trial
 from pipeline.quantities import Array, G
 
@@ -298,10 +298,10 @@ def pendulum_batch(
     results[:, :] = 0.0
     if x.shape[0] < 2:
         return
-    pieces = np.empty(m, dtype=np.int64)
+    pieces, order, spare = np.empty(m, np.int64), np.empty(m, np.int64), np.empty(m, np.int64)
     for k in range(m):
         pieces[k] = substeps(length[k], zeta[k], peak, dt) * refine
-    order = np.argsort(pieces, kind="mergesort")
+    in_order(pieces, order, spare)
     gains = np.zeros(x.shape[0])
     for i in range(x.shape[0] - 2, -1, -1):
         gains[i] = gains[i + 1] + 0.5 * dt * (math.hypot(x[i], z[i]) + math.hypot(x[i + 1], z[i + 1]))

@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from pipeline.kernels import CUT, FIRST, UNRESOLVED, inlined, inner, kernel
-from pipeline.kernels.lanes import LANES, lanes, same_steps
+from pipeline.kernels.lanes import LANES, in_order, lanes, same_steps
 from pipeline.kernels.pendulum import CAP, MOST_AFTER, STEP, substeps
 from pipeline.kernels.roots import narrowed, trial
 from pipeline.quantities import Array, G
@@ -246,10 +246,10 @@ def spherical_batch(
     results[:, :] = 0.0
     if x.shape[0] < 2:
         return
-    pieces = np.empty(m, dtype=np.int64)
+    pieces, order, spare = np.empty(m, np.int64), np.empty(m, np.int64), np.empty(m, np.int64)
     for k in range(m):
         pieces[k] = substeps(length[k], zeta[k], peak, dt) * refine
-    order = np.argsort(pieces, kind="mergesort")
+    in_order(pieces, order, spare)
     block = lanes(16)
     begin = FIRST
     while begin < m:

@@ -136,14 +136,13 @@ def run_context(
     site: Site,
     index: ObjectIndex,
     chosen: Listing,
-    pictures: Pictures,
     started: datetime,
-    progress: Progress,
 ) -> RunContext:
     """Make ready what everything that is done in a run shares; its charts are to be tidied at the end.
 
+    It has no pictures yet: see `illustrate`.
+
     index : all objects of the inventory;  chosen : those that the run is of
-    pictures  : where those of the motions are had
     raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record, TableError and
                 UsageError for tables of the museum's own, ReportError for a language without a catalogue
     """
@@ -185,7 +184,7 @@ def run_context(
         motions=tuple(summary for floor in floors.values() for summary in floor.summaries),
         demonstration=settings.demonstration,
     )
-    context = RunContext(
+    return RunContext(
         head=head,
         floors=floors,
         analysis=settings.analysis,
@@ -204,25 +203,40 @@ def run_context(
         paper=settings.report.paper,
         stock=StockTerms(settings.kept, told_floors(head.motions, site.levels), settings.museum.value_per_c),
     )
-    # The pictures are made before the verdicts, which use their charts; motions that two floors share only once.
-    drawn = pictures.of(list(motions.values()), progress)
-    measured = tradeoff.kept(settings.kept)
+
+
+def illustrate(context: RunContext, pictures: Pictures, progress: Progress) -> None:
+    """Give a run the pictures of its motions, which its pages show; they are waited for once.
+
+    pictures  : where they are had
+    """
+    if context.head.charts:
+        return
+    # Of motions that two floors share only once.
+    drawn = pictures.of(list(context.motions.values()), progress)
+    measured = None if context.kept is None else tradeoff.kept(context.kept)
     if measured is not None:
         picture = tradeoff.picture(measured)
         drawn[picture.key] = picture
-    context.head = replace(head, charts=drawn)
-    return context
+    context.head = replace(context.head, charts=drawn)
 
 
-def admit(context: RunContext, index: ObjectIndex, chosen: Listing, x_azimuth: float) -> list[ChartTask]:
-    """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
-    found = popular(index, assessed(chosen, context.stores), context.rules, context.measures, x_azimuth, context.house)
+def admit(
+    context: RunContext, index: ObjectIndex, chosen: Listing, x_azimuth: float
+) -> tuple[list[ChartTask], frozenset[str]]:
+    """Decide which response charts are used (see `popular`).
+
+    returns : those to be built before the sheets, and the names of the models that a sample of the objects is run with
+    """
+    scenes, every = _sample(index, assessed(chosen, context.stores), context.rules, context.house)
+    found = _paying(scenes, every, context.measures, x_azimuth)
     context.admitted = frozenset(found)
-    return [
+    tasks = [
         ChartTask(model.name, motion, angle, alike)
         for _, (model, angle, alike) in sorted(found.items())
         for motion in context.motions.values()
     ]
+    return tasks, frozenset(name for scene in scenes for name in scene.models)
 
 
 def assessed(objects: Listing, stores: bool) -> Listing:
@@ -247,11 +261,19 @@ def popular(
     What an object is found to do must not hang on which others happen to be worked on with it, or on who asked first.
     Of the measures few make something of many objects that one chart could serve (`Measure.charted`).
     """
+    return _paying(*_sample(index, chosen, rules, house), measures, x_azimuth)
+
+
+def _sample(
+    index: ObjectIndex, chosen: Listing, rules: RuleTable | None, house: HouseRules | None
+) -> tuple[list[Scene], int]:
     every = max(1, len(chosen) // SAMPLE)
     sample = index.items([one.object_number for one in chosen[::every]])
     # What cannot even be planned for is told where it is assessed.
-    scenes = sound(lambda some: [classify(item, rules, house=house) for item in some], list(sample.values()))
+    return sound(lambda some: [classify(item, rules, house=house) for item in some], list(sample.values())), every
 
+
+def _paying(scenes: Sequence[Scene], every: int, measures: MeasureCatalogue, x_azimuth: float) -> dict[str, Group]:
     def planned(some: Sequence[Scene]) -> list[tuple[Work, float]]:
         return [
             (work, share)

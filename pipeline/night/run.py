@@ -3,7 +3,7 @@
 import warnings
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any, Protocol, TypeVar
@@ -17,7 +17,7 @@ from pipeline.errors import DamageWarning, InputError
 from pipeline.motions.site import Site
 from pipeline.night.importing import Imported, import_collection, source_of
 from pipeline.night.photographs import Photographs
-from pipeline.night.prepare import Pictures, admit, pictures, run_context
+from pipeline.night.prepare import Pictures, admit, illustrate, pictures, run_context
 from pipeline.night.publication import Publication
 from pipeline.night.reading_summary import doubts_of
 from pipeline.night.scheduler import Scheduler
@@ -94,11 +94,14 @@ def _run(
         if shown is not None and not dry_run:
             # A run that was cut off when its report was shown already, and that the database did not hear of.
             mark_finished(workspace.engine, shown.run_id)
-        site = _read_site(workspace, progress)
         # Nearly every night of the whole museum uses nearly all of it again.
         previous = None if chosen or dry_run else PreviousReport.read(workspace.reports / "latest")
         looking = nullcontext() if previous is None else previous.looking()
-        with Staff(settings.execution) as staff, pictures(workspace, site) as drawing, looking:
+        with Staff(settings.execution) as staff, looking, ExitStack() as stack:
+            if not chosen:
+                staff.compile()
+            site = _read_site(workspace, progress)
+            drawing = stack.enter_context(pictures(workspace, site))
             if not (resume and _was_read(workspace, cut_off)):
                 new = _refresh(workspace, progress, dry_run=dry_run)
                 staff.call(0 if chosen else new)
@@ -106,7 +109,7 @@ def _run(
             def held() -> Summary:
                 night = _planned(workspace, site, chosen, drawing, started, progress, staff)
                 try:
-                    return _hold(night, previous, progress, chosen, dry_run=dry_run, strict=strict)
+                    return _hold(night, drawing, previous, progress, chosen, dry_run=dry_run, strict=strict)
                 finally:
                     tidy(settings, night.context.motions)
 
@@ -133,13 +136,19 @@ def _planned(
     """Return the run with all that is shared in it made ready, and what there is to do known."""
     index = workspace.object_index()
     objects = _chosen(index.objects, chosen)
-    context = run_context(workspace, site, index, objects, drawing, started, progress)
-    charts = admit(context, index, objects, site.manifest.site.x_azimuth)
+    context = run_context(workspace, site, index, objects, started)
+    charts, models = admit(context, index, objects, site.manifest.site.x_azimuth)
+    if not chosen:
+        staff.compile(models)
+    if charts or staff.compiling:
+        # What they need is not to be built twice, nor compiled.
+        illustrate(context, drawing, progress)
     return Scheduler(workspace, context, index, objects, decisions_in_force(workspace.engine), staff, charts)
 
 
 def _hold(
     night: Scheduler,
+    drawing: Pictures,
     previous: PreviousReport | None,
     progress: Progress,
     chosen: Selection,
@@ -150,6 +159,7 @@ def _hold(
     """Do what there is to do, store it, publish it, say what changed."""
     workspace, engine = night.workspace, night.workspace.engine
     night.assess(progress, store=not dry_run)
+    illustrate(night.context, drawing, progress)
     photographs = Photographs(workspace)
     if not dry_run:
         stores = workspace.settings.display.stores

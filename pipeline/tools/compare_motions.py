@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pipeline.collection.database import Database, open_database
 from pipeline.motions.site import Level, Site, read_site, with_corner
-from pipeline.night.prepare import admit, pictures, run_context
+from pipeline.night.prepare import admit, illustrate, pictures, run_context
 from pipeline.night.publication import Publication
 from pipeline.night.scheduler import Scheduler
 from pipeline.night.staff import Staff
@@ -178,8 +178,9 @@ def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, pro
     """
     everything = workspace.object_index()
     with pictures(workspace, site) as drawing:
-        context = run_context(workspace, site, everything, everything.objects, drawing, datetime.now(UTC), progress)
-    charts = admit(context, everything, everything.objects, site.manifest.site.x_azimuth)
+        context = run_context(workspace, site, everything, everything.objects, datetime.now(UTC))
+        illustrate(context, drawing, progress)
+    charts, _ = admit(context, everything, everything.objects, site.manifest.site.x_azimuth)
     decisions = decisions_in_force(workspace.engine)
     with Staff(workspace.settings.execution) as staff:
         night = Scheduler(workspace, context, everything, everything.objects, decisions, staff, charts)
