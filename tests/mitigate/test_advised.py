@@ -32,7 +32,6 @@ pytestmark = pytest.mark.slow_file
 FOLDER = Path(__file__).parents[1] / "data" / "collections"
 
 UNWEIGHED = {
-    "N.06": "its box is that of its antlers: the range covers it",
     "N.07": "an egg that rests in a ring is no body with a foot: the range covers it",
     "N.08": "a disc fills more of its box than a thing of stone that may be anything",
     "N.09": "a flying cast is thinner than any body of its outline: the range nearly covers it",
