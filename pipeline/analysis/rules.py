@@ -168,6 +168,7 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
                 return Readings(RuleMatch(rule, f"AAT {min(shared)}"), outright=True)
     kinds = _kinds(item.classification) | _kinds(item.object_name)
     classed, made = _wordless(item, kinds, of)
+    title = _named(item, item.title, kinds, of)
     bare = _is_bare(item)
     name = _named(item, item.object_name, kinds, of, alone=bare) if item.object_name else _made_as(item, kinds, of)
     # What a table of classifications knows, such as silkscreen, is no screen.
@@ -175,13 +176,16 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     if name is None and item.object_name and not any(rule.kinds & called for rule in of.classed):
         text, share = akin(item.object_name[:READ], of)
         kin = _named(item, text, kinds, of)
-        name = _headed(item, of) if kin is None else replace(kin, share=share)
+        if kin is not None:
+            name = replace(kin, share=share)
+        elif title is None:
+            # Of "Furniture and woodwork" the title "Armchair" says more.
+            name = _headed(item, of)
     elif name is not None and item.object_name:
         share = _believed_at(item.object_name[:READ], name.word, of)
         name = replace(name, share=min(name.share, share, homographs().get(name.word, 1.0)))
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
-    title = _named(item, item.title, kinds, of)
     if name is None and title is not None and not item.object_name and _is_full(item.title, title):
         name = title
     if name is not None and title is not None and (_narrows(title, name, item) or _one_of_types(title, item, of)):

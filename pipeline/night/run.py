@@ -99,7 +99,7 @@ def _run(
         looking = nullcontext() if previous is None else previous.looking()
         with Staff(settings.execution) as staff, looking, ExitStack() as stack:
             if not chosen:
-                staff.compile()
+                staff.begin_compiling()
             site = _read_site(workspace, progress)
             drawing = stack.enter_context(pictures(workspace, site))
             if not (resume and _was_read(workspace, cut_off)):
@@ -139,7 +139,7 @@ def _planned(
     context = run_context(workspace, site, index, objects, started)
     charts, models = admit(context, index, objects, site.manifest.site.x_azimuth)
     if not chosen:
-        staff.compile(models)
+        staff.begin_compiling(models)
     if charts or staff.compiling:
         # What they need is not to be built twice, nor compiled.
         illustrate(context, drawing, progress)

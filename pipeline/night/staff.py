@@ -106,7 +106,7 @@ class Staff:
         if objects > FEW and not self._wanted.cluster:
             self._processes()
 
-    def compile(self, models: Collection[str] = ()) -> None:
+    def begin_compiling(self, models: Collection[str] = ()) -> None:
         """Let processes begin to compile what is not kept, while this one prepares the work.
 
         Parameters

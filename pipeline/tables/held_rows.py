@@ -71,7 +71,7 @@ class HeldAs:
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
+class _OneRow:
     """A row, ready to match: what finds its words, and what finds two that belong together, each with the first."""
 
     row: HeldWords
@@ -94,12 +94,12 @@ class _Told:
 
 
 @cache
-def _rows() -> tuple[_Told, ...]:
+def _rows() -> tuple[_OneRow, ...]:
     out = []
     for row in checked(HeldWords, table("held_words"), "held_words.csv", named="words"):
         pairs = [word for word in row.words if _PAIR in word]
         alone = re.compile(_any([word for word in row.words if word not in pairs]), re.IGNORECASE)
-        out.append(_Told(row, alone, tuple((_first(word), re.compile(_both(word), re.IGNORECASE)) for word in pairs)))
+        out.append(_OneRow(row, alone, tuple((_first(word), re.compile(_both(word), re.IGNORECASE)) for word in pairs)))
     return tuple(out)
 
 

@@ -14,6 +14,7 @@ from pipeline.records import Furniture, Item, Origin, Support, times_too_thin
 from pipeline.tables import Range, Row, table
 from pipeline.tables.assumed import assumed, span
 from pipeline.tables.fill_rows import fill_of
+from pipeline.tables.usual_material_rows import usual_material
 from tests import museum
 
 VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
@@ -180,11 +181,15 @@ def test_every_range_of_class_and_material_travels_to_the_models(row: Row, mater
     tensile = [float(stuff[c]) for c in ("tensile_low", "tensile", "tensile_high")]
     assert [getattr(found["allowable_stress"], s) for s in ends] == tensile
     box = 0.3 * 0.3 * item.height_m * (pi / 4 if row["round"] == "yes" else 1.0)  # type: ignore[operator]
-    fill = fill_of(row["class"], stuff["material"], item.height_m or 0.0) or Range(
+    weighs = [float(stuff[f"density{end}"]) for end in ("_low", "", "_high")]
+    usual = usual_material(str(row["class"]), item.title, item.height_m or 0.0) if material == "unknown" else None
+    if usual is not None:  # nobody recorded what it is made of
+        weighs = [usual.density_low, usual.of.density, usual.density_high]
+    made = stuff["material"] if usual is None else usual.material
+    fill = fill_of(row["class"], made, item.height_m or 0.0) or Range(
         *(float(row[c]) for c in ("fill", "fill_low", "fill_high")), ""
     )
-    filled = zip((fill.low, fill.value, fill.high), ("_low", "", "_high"), strict=True)
-    masses = [box * share * float(stuff[f"density{end}"]) for share, end in filled]
+    masses = [box * share * density for share, density in zip((fill.low, fill.value, fill.high), weighs, strict=True)]
     assert [getattr(found["mass"], s) for s in ends] == pytest.approx(masses)
 
 

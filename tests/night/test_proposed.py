@@ -48,10 +48,10 @@ def named(names: list[str]) -> list[Item]:
 
 
 def test_a_museum_hears_that_its_words_are_of_a_language_that_is_not_known() -> None:
-    unknown = ["Argizaiola", "Kirnu", "Kuksa"] * 10
+    unknown = ["Argizaiola", "Kirnu", "Uztarria"] * 10
     said = unknown_names(named([*unknown, *["Vase"] * 10]))
     assert said.startswith(
-        "75% of the objects are called what names no class here, such as 'Argizaiola', 'Kirnu', 'Kuksa'"
+        "75% of the objects are called what names no class here, such as 'Argizaiola', 'Kirnu', 'Uztarria'"
     )
     assert "[collection] rules" in said
     assert unknown_names(named([*unknown[:10], *["Vase"] * 30])) == ""
