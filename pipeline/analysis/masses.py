@@ -82,8 +82,9 @@ def mass_of(
     fill = own or row.filled
     # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
     by_volume = fill is not None and item.depth_m is not None and material.name != UNKNOWN
+    words = f"{item.object_name} {item.title}"
     cloth = (material.name == CLOTH and support is Support.HUNG) and (
-        (row.name != FRAMED and not thick) or _SCROLL.search(f"{item.object_name} {item.title}") is not None
+        (row.name != FRAMED and not thick) or _SCROLL.search(words) is not None
     )
     wall = (_CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
     face = {Support.HUNG: wall, Support.SUSPENDED: (_SUSPENDED, say.MASS_OF_SUSPENDED)}
@@ -96,7 +97,6 @@ def mass_of(
         return None
     density = material.density_range
     phrase = say.MASS_OF_SHELL if own else say.MASS_OF_CLASS if row.aside else say.MASS
-    words = f"{item.object_name} {item.title}"
     usual = usual_material(row.name, words, item.height_m) if material.name == UNKNOWN and item.height_m else None
     if usual is not None and not (row.own or shaped):
         material, density, phrase = usual.of, usual.density, say.MASS_OF_USUAL

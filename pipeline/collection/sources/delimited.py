@@ -333,12 +333,22 @@ class CsvSettings(HeadedSettings):
         pattern=r'^[^"\r\n\x00]$', description="The one character between two cells: a comma, a semicolon or a tab."
     )
 
+    @property
+    def between(self) -> str:
+        """What parts the cells, as `read_delimited` takes it."""
+        return self.delimiter
+
 
 class TsvSettings(HeadedSettings):
     """How a file with tabs between its cells is read."""
 
     format: Literal["tsv"] = Field(description="The kind of source.")
     encoding: Encoding = Field(description="How its letters are coded; Excel's Unicode text is utf-16.")
+
+    @property
+    def between(self) -> str:
+        """As of `CsvSettings`."""
+        return "\t"
 
 
 class FixedSettings(HeadedSettings):
@@ -355,6 +365,11 @@ class FixedSettings(HeadedSettings):
         if list(self.starts) != sorted(set(self.starts)):
             raise InputError("[source] starts needs each column's first character, from left to right")
         return self
+
+    @property
+    def between(self) -> tuple[int, ...]:
+        """As of `CsvSettings`."""
+        return self.starts
 
 
 class Csv(FileSource):
@@ -381,9 +396,9 @@ class Csv(FileSource):
         Row
             First the header.
         """
-        own: CsvSettings = request.settings
+        own: CsvSettings | TsvSettings | FixedSettings = request.settings
         return own.straight(
-            read_delimited(binary, file, own.delimiter, own.encoding, own.header_row or 1, own.header_rows or 1), file
+            read_delimited(binary, file, own.between, own.encoding, own.header_row or 1, own.header_rows or 1), file
         )
 
 
@@ -394,24 +409,6 @@ class Fixed(Csv):
     title = "a text with its cells below each other"
     Settings = FixedSettings
 
-    def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
-        """Yield the header and the rows.
-
-        Parameters
-        ----------
-        binary, file, request : BufferedReader, str, Request
-            As of `FileSource.rows`.
-
-        Yields
-        ------
-        Row
-            First the header.
-        """
-        own: FixedSettings = request.settings
-        return own.straight(
-            read_delimited(binary, file, own.starts, own.encoding, own.header_row or 1, own.header_rows or 1), file
-        )
-
 
 class Tsv(Csv):
     """The same with tabs."""
@@ -419,21 +416,3 @@ class Tsv(Csv):
     name = "tsv"
     title = "a file with tabs between its cells"
     Settings = TsvSettings
-
-    def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
-        """Yield the header and the rows.
-
-        Parameters
-        ----------
-        binary, file, request : BufferedReader, str, Request
-            As of `FileSource.rows`.
-
-        Yields
-        ------
-        Row
-            First the header.
-        """
-        own: TsvSettings = request.settings
-        return own.straight(
-            read_delimited(binary, file, "\t", own.encoding, own.header_row or 1, own.header_rows or 1), file
-        )
