@@ -6,8 +6,8 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.collection.sources.xlsx import first_rows
-from pipeline.quantities import LENGTHS, MASSES
 from pipeline.report.files.marked_copy import CellFault
 from pipeline.report.files.sheet_cells import HEADER_ROW
 
@@ -21,8 +21,6 @@ _OF_NAME = re.compile(r"(?P<what>.+?) ?\[(?P<unit>[^\[\]]*)\]")
 
 _OF_WORDS = re.compile(r".*[(\[](?P<unit>[^()\[\]]*)[)\]]\s*")
 """The words above it, which name the unit last: Height (cm)."""
-
-_SPELT = {"inch": "in", "inches": "in", '"': "in", "feet": "ft", "foot": "ft", "'": "ft", "lbs": "lb", "metres": "m"}
 
 
 @dataclass(frozen=True)
@@ -89,9 +87,7 @@ def heads_of(path: Path, sheet: str, known: frozenset[str]) -> SheetHeads:
 def _unit(pattern: re.Pattern[str], head: str) -> str:
     """Return the length or mass that a head names, "" for none."""
     found = pattern.fullmatch(head.strip())
-    unit = "" if found is None else found["unit"].strip().rstrip(".").casefold()
-    unit = _SPELT.get(unit, unit)
-    return unit if unit in LENGTHS or unit in MASSES else ""
+    return (None if found is None else unit_of(found["unit"])) or ""
 
 
 def _nearest(name: str, known: frozenset[str]) -> str:
