@@ -169,6 +169,10 @@ _SHOWN = 80
 """Characters of a cell that a message repeats."""
 _SAME = str.maketrans("ıيىكة", "iییکه")
 """Letters that nobody can tell apart, in Turkish capitals, or that Arabic and Persian write differently."""
+_COUNTED = re.compile(
+    r"(?<=[\u3400-\u9fff])\s?[一二两三四五六七八九十\d]+(?:对|対|双|件|组|組|套|只|尊|座|个|個|枚|副|匹|躯|体|基)(?![\u3400-\u9fff])"
+)
+"""How many there are, behind the name of a thing in signs: 石狮一对."""
 HEAD_FIRST = re.compile(r"[\u0590-\u06ff]")
 """Letters of languages that name a thing before what it is of, with no word between: Arabic, Persian, Hebrew."""
 IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
@@ -180,7 +184,7 @@ def fold(text: str) -> str:
     """Return a text without capitals and accents, so that Büste, buste and BUSTE are the same word."""
     if not text.isascii():
         text = "".join(c for c in normalize("NFKD", text) if not combining(c)).translate(_SAME)
-        text = shortened_signs(text)
+        text = _COUNTED.sub("", shortened_signs(text))
     return text.casefold()
 
 

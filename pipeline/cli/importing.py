@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from pipeline.night.importing import Imported, Proposed
     from pipeline.tools.sheet_answers import SheetTaken
 
+_LEFT = 15
+"""Columns that are listed as not read at most."""
+
 
 @click.command("import")
 @click.argument("source", required=False)
@@ -166,6 +169,7 @@ def _guess(
             "doubts": found.guess.doubts,
             "questions": [asdict(question) for question in found.guess.questions],
             "sure": found.guess.sure,
+            "left": found.guess.left,
             "unknown": found.unknown,
             "rows": found.reading.rows,
             "examples": found.examples,
@@ -212,6 +216,9 @@ def _show(found: "Proposed") -> None:
     listed("refused", [f"{r.message}; {r.remedy}" for r in reading.rejected], most=3)
     listed("doubtful", _kinds(reading), most=5)
     listed("sure", list(found.guess.sure))
+    if left := found.guess.left:
+        more = f" and {len(left) - _LEFT} more" if len(left) > _LEFT else ""
+        listed("not read", [f"{', '.join(repr(name[:60]) for name in left[:_LEFT])}{more}: no field takes these columns"])
     listed("to look at", [*found.guess.doubts, *filter(None, [found.unknown])])
     listed(
         "to choose",

@@ -20,6 +20,8 @@ _COMPOUND = re.compile(r"\w{3,}(?:depot|magazin|magasin|varasto|förråd)s?")
 _MOST_BESIDE = 3
 _MOST_FLAGS, _LONGEST_FLAG = 40, 80
 _CJK = re.compile("[\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7af]")
+_DENYING = "非未不沒没無无비미"
+"""Signs that deny the word that follows: 비전시 is what 전시 is not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +65,15 @@ def flag_of(text: str, *, display: bool = False) -> bool | None:
         return None
     if folded in meant["shown"]:
         return True
-    if _CJK.search(folded) and not says_away(text):
-        return True if any(word in folded for word in meant["shown"] if _CJK.search(word)) else None
-    return False if says_away(text) else None
+    if says_away(text):
+        return False
+    said = [word for word in meant["shown"] if _CJK.search(word) and word in folded]
+    return not any(sign + word in folded for sign in _DENYING for word in said) if said else None
+
+
+def says_shown(text: str) -> bool:
+    """Say whether a text says that something is on display, and where it is not: "On view", "Teşhir"."""
+    return _folded(text) in _meant()["shown"]
 
 
 def tells_nothing(text: str) -> bool:

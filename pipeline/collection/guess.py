@@ -90,6 +90,8 @@ class Guess:
         What may be chosen otherwise, by the key that the choice has.
     sure : tuple of str
         What the source itself says.
+    left : tuple of str
+        Columns that hold something and of which nothing is read.
     """
 
     text: str
@@ -97,6 +99,7 @@ class Guess:
     doubts: tuple[str, ...]
     questions: tuple[Question, ...] = ()
     sure: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
 
 
 def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str] | None = None) -> Guess:
@@ -249,7 +252,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         if placed is not None:
             found["gallery"] = placed
             told.doubts.append(f"column {placed.name!r} is taken to tell where objects are, by what it holds")
-    words_of_display(found, told)
+    words_of_display(columns, found, told)
     if "on_display" not in found and "on_display" not in told.choices:
         flag = flag_among(columns, found.values())
         if flag is not None:
@@ -350,7 +353,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         )
     text = tomlkit.dumps(document)
     proposal = Proposal.model_validate(document.unwrap())
-    return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure))
+    unread = tuple(one.name for one in left if one.units < 0.5 and one.name not in text)
+    return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure), unread)
 
 
 def _add_misspelt(columns: Sequence[Column], able: dict[str, list[Column]], told: GuessNotes) -> None:
@@ -406,8 +410,9 @@ def _chosen(
     if number is None:
         found["object_number"] = number = _unique(name, columns, found)
         told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
-        free = [column for column in columns if column is number or column not in found.values()]
-        likely = tuple(c.name for c in free if len(set(c.filled)) > 0.9 * len(c.values) and c.numbering)
+        texts = texts_among(columns, found.values())
+        free = [one for one in columns if one is number or (one not in found.values() and one not in texts)]
+        likely = tuple(c.name for c in free if c is number or (c.numbering and len(c.distinct) > 0.9 * len(c.values)))
         told.questions.append(Question("object_number", "which column has the object numbers?", likely, number.name))
     elif len(able.get("object_number", ())) > 1 and "object_number" not in told.choices:
         likely = tuple(column.name for column in able["object_number"])

@@ -4,9 +4,10 @@ import re
 from functools import cache, lru_cache
 from typing import NamedTuple
 
+from pipeline.collection.display_words import says_shown
 from pipeline.records import Furniture
 from pipeline.tables.held_rows import CASES, hangs_above, told_by, words_for
-from pipeline.tables.rows import any_of
+from pipeline.tables.rows import UNPARTED, any_of
 
 _SEPARATOR = re.compile(r"\s*[,;/>|]\s*|:\s+|\s+[-–—]\s+")
 LONGEST = 300
@@ -24,7 +25,7 @@ ROOM = re.compile(
     re.IGNORECASE,
 )
 """A room that is named without a number or a mark behind it: "Fossil room Case 2"."""
-_NUMBERED_ROOM = re.compile(rf"(.*?(?:{ROOM.pattern}\s?(?:no\.?|nr\.?|#|№)?\s?{_SIGN}|展示室))\s+(\S.*)", re.IGNORECASE)
+_NUMBERED_ROOM = re.compile(rf"(.*?(?:{ROOM.pattern}\s?(?:no\.?|nr\.?|#|№)?\s?{_SIGN}|\S[室厅廳館실관홀]))\s+(\S.*)", re.IGNORECASE)
 """One with its number and more words behind: "Gallery 3 on plinth"."""
 
 
@@ -54,6 +55,9 @@ def parted(text: str) -> NamedPlace:
         return NamedPlace(enclosed[1], displayed=enclosed[2])
     ends = [found.span() for found in _SEPARATOR.finditer(text)]
     spans = list(zip((0, *(end for _, end in ends)), (*(start for start, _ in ends), len(text)), strict=True))
+    if len(spans) > 1 and says_shown(text[: spans[0][1]]):
+        # "On view - Room 1, case 3": that it is on view is no part of the room's name.
+        return parted(text[spans[1][0] :])
     whole, numbered, inside = _patterns()
     cases = [bool(whole.match(text[start:end])) for start, end in spans]
     if any(cases):
@@ -64,6 +68,9 @@ def parted(text: str) -> NamedPlace:
             # "Case 3, Gallery 1": the other way round.
             room = cases.index(False)
             return NamedPlace(text[spans[room][0] :], text[: spans[room - 1][1]])
+        behind = _NUMBERED_ROOM.fullmatch(text) if len(spans) == 1 else None
+        if behind and whole.match(behind[2]):
+            return NamedPlace(behind[1], behind[2])
         found = inside.search(text) if len(spans) == 1 else None
         if found and ROOM.search(text[: found.start()]):
             return NamedPlace(text[: found.start()].rstrip(), text[found.start() :])
@@ -84,6 +91,19 @@ def parted(text: str) -> NamedPlace:
     return NamedPlace(text, displayed=text if hangs_above(text) else "")
 
 
+def case_in(text: str) -> str:
+    """Return the case, plinth or shelf that a text on how a thing is displayed names by its number; else "".
+
+    Parameters
+    ----------
+    text : str
+        As the museum writes it: "showcase 4", "Vitrine 12, on a cushion".
+    """
+    numbered = _patterns()[1]
+    pieces = _SEPARATOR.split(text[:LONGEST])
+    return next((piece.strip() for piece in pieces if numbered.match(piece)), "")
+
+
 def _tells(piece: str) -> bool:
     told = told_by(piece)
     return told.support is not None or told.furniture is not None
@@ -95,7 +115,10 @@ def _patterns() -> tuple[re.Pattern[str], re.Pattern[str], re.Pattern[str]]:
     kinds = (Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
     plain = [word for kind in kinds for word in words_for(kind) if "*" not in word]
     word, numbered = f"(?:{any_of(plain).pattern})", f"(?:{any_of([*plain, *CASES]).pattern})"
-    counted = rf"{numbered}\.?\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}"
+    # 3号柜, 第2ケース: the number comes first.
+    signs = any_of([*filter(UNPARTED.match, [*plain, *CASES]), "柜", "櫃"]).pattern
+    ahead = rf"[第제]?[\d一二三四五六七八九十]{{1,4}}\s?[号號番번]?\s?(?:{signs})"
+    counted = rf"(?:{numbered}\.?\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}|{ahead})"
     before = r"\s*(?:[^\W\d_]+[\s-]+){0,2}"
     return (
         re.compile(rf"{before}(?:{counted}|{word}|case)\s*$", re.IGNORECASE),

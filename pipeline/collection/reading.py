@@ -23,7 +23,7 @@ from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, check_head
 from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.opening import open_source
-from pipeline.collection.places import parted
+from pipeline.collection.places import case_in, parted
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.row_audit import RowAudit
 from pipeline.collection.source_audit import audit, judged, taken_away
@@ -435,6 +435,8 @@ class RowReader:
         elif self._mapping.columns["gallery"].cases:
             gallery, values["case"], held = parted(gallery)
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), held)))
+        if not values.get("case") and "case" not in self._mapping.columns:
+            values["case"] = case_in(values.get("displayed") or "")
         photographs = self._mapping.images
         values["image"] = of_pattern(
             photographs.pattern, values["object_number"], first_of(str(values.get("image") or ""))

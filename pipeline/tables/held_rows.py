@@ -159,6 +159,10 @@ def told_by(text: str) -> HeldAs:
         Of each thing that which the first row of the table says whose words are there.
     """
     found = [told.row for told in _rows() if told.says(text)] if text.strip() else []
+    support = next((row.support for row in found if row.support is not None), None)
+    if support in (Support.HUNG, Support.SUSPENDED):
+        # "On the wall over the sideboard": what hangs stands on nothing.
+        found = [row for row in found if row.support in (None, support)]
     names = ("support", "hanging", "furniture", "anchorage", "mount")
     return HeldAs(
         **{name: next((one for row in found if (one := getattr(row, name)) is not None), None) for name in names}

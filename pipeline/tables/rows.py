@@ -42,7 +42,7 @@ BUT_NOT = re.compile(rf"(?:\b(?:{_DENIED})\s+(?:\w+\s+){{0,3}}|\bun)$", re.IGNOR
 SOME_WORDS = r"(?:\w+\W+){0,3}"
 """What * stands for in the words of a table: up to three words."""
 
-_UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
+UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
@@ -213,8 +213,8 @@ def any_of(words: Iterable[str]) -> re.Pattern[str]:
         nothing parts from each other, are found within others.
     """
     escaped = [(word, re.escape(word).replace(r"\*", SOME_WORDS)) for word in words]
-    within = [pattern for word, pattern in escaped if _UNPARTED.match(word)]
-    parted = [pattern for word, pattern in escaped if not _UNPARTED.match(word)]
+    within = [pattern for word, pattern in escaped if UNPARTED.match(word)]
+    parted = [pattern for word, pattern in escaped if not UNPARTED.match(word)]
     # One boundary for all: to look for it before each word took four times as long.
     return re.compile("|".join([*within, *([rf"\b(?:{'|'.join(parted)})\b"] if parted else [])]), re.IGNORECASE)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import tomlkit
 
@@ -58,6 +58,11 @@ class Question:
     text: str
     options: tuple[str, ...]
     taken: str
+
+    def without(self, name: str) -> "Question | None":
+        """Return the question without an option, where it leaves something to choose."""
+        options = tuple(option for option in self.options if option != name)
+        return replace(self, options=options) if options not in ((), (self.taken,)) else None
 
 
 def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:

@@ -9,8 +9,9 @@ import tomlkit
 from pipeline.collection.display_words import flag_of
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.fields import MOST_WORDS, tells_display
-from pipeline.collection.guessing.names import path_of, plain
+from pipeline.collection.guessing.names import named, path_of, plain
 from pipeline.collection.guessing.source import GuessNotes
+from pipeline.tables.held_rows import HeldAs, told_by
 
 _REMOVED = frozenset(
     {
@@ -19,6 +20,12 @@ _REMOVED = frozenset(
     }
 )
 """Words of a column that tells how an object left the museum."""
+_MAY_TELL = ("support", "displayed", "medium", "case", "gallery")
+"""Fields whose columns may hold how objects are held: "Tipo de suporte" is what a picture is on, or a plinth."""
+_WAYS = 0.5
+"""Share of its texts from which a column of another name is one of how objects are held (judgement)."""
+_FEWEST = 2
+"""Different ways that one tells at least: a single "montiert" says how a thing was made."""
 _FEW = 0.5
 """Share of the objects that may have left it (judgement)."""
 
@@ -59,8 +66,18 @@ def removed(columns: Sequence[Column], found: Mapping[str, Column], told: GuessN
     return entry
 
 
-def words_of_display(found: dict[str, Column], told: GuessNotes) -> None:
-    """Take a column for how objects are displayed only where it holds words; one of mounts, too, that holds such."""
+def words_of_display(columns: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:
+    """Take a column for how objects are displayed only where it holds words of that; whatever it is called.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    found : dict of str to Column
+        Field -> its column; one of mounts becomes that of how objects are displayed, where it tells that.
+    told : GuessNotes
+        What is said of it; grows.
+    """
     column = found.get("displayed")
     if column is not None and "displayed" not in told.choices and not tells_display(column):
         del found["displayed"]
@@ -73,6 +90,25 @@ def words_of_display(found: dict[str, Column], told: GuessNotes) -> None:
     if "displayed" not in found and mounts is not None and "support" not in told.choices and tells_display(mounts):
         found["displayed"] = found.pop("support")
         told.doubts.append(f"column {mounts.name!r} is taken to say in words how objects are displayed or held")
+    if not {"displayed", "support"} & {*found, *told.choices}:
+        _by_what_it_holds(columns, found, told)
+
+
+def _by_what_it_holds(columns: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:
+    taken = {id(column) for column in found.values()}
+    free = [one for one in columns if id(one) not in taken and one.filled and not one.prose]
+    able = [one for one in free if (what := named(one.name)) is None or what.field in _MAY_TELL]
+    column = max(filter(_holds_ways, able), key=lambda one: len(one.filled), default=None)
+    if column is None:
+        return
+    found["displayed"] = column
+    told.doubts.append(f"column {column.name!r} is taken to say how objects are displayed or held, by what it holds")
+    told.questions[:] = filter(None, (one.without(column.name) for one in told.questions))
+
+
+def _holds_ways(column: Column) -> bool:
+    ways = sum(told_by(text) != HeldAs() for text in column.distinct)
+    return tells_display(column) and ways >= max(_FEWEST, _WAYS * len(column.distinct))
 
 
 def place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:

@@ -86,6 +86,8 @@ def parting(columns: Sequence[Column], used: Iterable[Column], place: Column | N
         words = column.distinct
         if id(column) in taken or not 1 < len(words) <= _MOST_WORDS or len(column.filled) < len(column.values):
             continue
+        if column.units:
+            continue
         said: dict[str, set[str]] = {}
         for where, word in zip(place.values, column.values, strict=True):
             said.setdefault(where, set()).add(word)
