@@ -218,7 +218,9 @@ def _show(found: "Proposed") -> None:
     listed("sure", list(found.guess.sure))
     if left := found.guess.left:
         more = f" and {len(left) - _LEFT} more" if len(left) > _LEFT else ""
-        listed("not read", [f"{', '.join(repr(name[:60]) for name in left[:_LEFT])}{more}: no field takes these columns"])
+        listed(
+            "not read", [f"{', '.join(repr(name[:60]) for name in left[:_LEFT])}{more}: no field takes these columns"]
+        )
     listed("to look at", [*found.guess.doubts, *filter(None, [found.unknown])])
     listed(
         "to choose",

@@ -24,7 +24,6 @@ from pipeline.collection.guessing.columns import (
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import (
     Fields,
-    Question,
     decimal_of,
     flag_among,
     images_among,
@@ -33,7 +32,8 @@ from pipeline.collection.guessing.fields import (
 from pipeline.collection.guessing.headings import place_by_heading
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named
 from pipeline.collection.guessing.orders import section_of
-from pipeline.collection.guessing.shown import place_of_shown, removed, words_of_display
+from pipeline.collection.guessing.questions import Question
+from pipeline.collection.guessing.shown import place_of_shown, removed, room_and_position, words_of_display
 from pipeline.collection.guessing.source import (
     GuessNotes,
     columns_in,
@@ -252,6 +252,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         if placed is not None:
             found["gallery"] = placed
             told.doubts.append(f"column {placed.name!r} is taken to tell where objects are, by what it holds")
+    room_and_position(able.get("gallery", ()), found, told)
     words_of_display(columns, found, told)
     if "on_display" not in found and "on_display" not in told.choices:
         flag = flag_among(columns, found.values())

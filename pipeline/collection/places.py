@@ -25,7 +25,9 @@ ROOM = re.compile(
     re.IGNORECASE,
 )
 """A room that is named without a number or a mark behind it: "Fossil room Case 2"."""
-_NUMBERED_ROOM = re.compile(rf"(.*?(?:{ROOM.pattern}\s?(?:no\.?|nr\.?|#|№)?\s?{_SIGN}|\S[室厅廳館실관홀]))\s+(\S.*)", re.IGNORECASE)
+_NUMBERED_ROOM = re.compile(
+    rf"(.*?(?:{ROOM.pattern}\s?(?:no\.?|nr\.?|#|№)?\s?{_SIGN}|\S[室厅廳館실관홀]))\s+(\S.*)", re.IGNORECASE
+)
 """One with its number and more words behind: "Gallery 3 on plinth"."""
 
 

@@ -19,7 +19,7 @@ from pipeline.collection.display_words import flag_of, tells_nothing
 from pipeline.collection.errors import CollectionError, NoRowsError
 from pipeline.collection.image_names import first_of, of_pattern
 from pipeline.collection.limits import STANDARD, Limits, Meter
-from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, check_header
+from pipeline.collection.mapping import ColumnMap, Mapping, check_header
 from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.opening import open_source
@@ -31,8 +31,9 @@ from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.headings import HEADING, heads_or_sums
 from pipeline.collection.sources.rows import NO_FAULTS, Row
 from pipeline.collection.unit_audit import Evidence, Suspicion
+from pipeline.collection.whole_cells import read_whole_sizes, spread_diameter
 from pipeline.errors import KourosError, fault_words
-from pipeline.records import Item, Origin, Problem, Provenance
+from pipeline.records import Item, Problem
 
 logger = logging.getLogger(__name__)
 
@@ -365,7 +366,8 @@ class RowReader:
             field: _read(cells, field, self.audit.column_of(field, column, row, cells), [row.cells[i] for i in places])
             for field, column, places in self._columns
         }
-        self._spread_diameter(values, cells)
+        spread_diameter(values, cells)
+        read_whole_sizes(values, cells, self._columns, row.cells, self._mapping.dimensions)
         if self._texts and self._mapping.dimensions is not None:
             self._fill(values, cells, self._mapping.dimensions, [row.cells[i] for i in self._texts])
         self.audit.lost(row, cells)
@@ -446,16 +448,6 @@ class RowReader:
         provenance = tuple(sorted(cells.provenance, key=lambda of: of.field))
         values.update(gallery=gallery, on_display=on_display, provenance=provenance, problems=tuple(cells.problems))
         return Item(**values)
-
-    def _spread_diameter(self, values: dict[str, Any], cells: Cells) -> None:
-        diameter = values.pop(DIAMETER, None)
-        written = next((of.written for of in cells.provenance if of.field == DIAMETER), "")
-        cells.provenance = [of for of in cells.provenance if of.field != DIAMETER]
-        for field in ("width_m", "depth_m"):
-            if values.get(field) is None:
-                values[field] = diameter
-                if diameter is not None:
-                    cells.provenance.append(Provenance(field, Origin.DERIVED, written, "its diameter"))
 
     def _reject(self, row: Row, field: str, message: str, remedy: str) -> None:
         where = f"{self._file}, row {row.number} (line {row.line}): {message}"

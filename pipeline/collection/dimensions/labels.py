@@ -32,6 +32,9 @@ _ARTICLES = frozenset("aeicgsnfp")
 """Letters that are words or number components as well: in small letters they are labels only before a mark."""
 _UPRIGHT = frozenset({"縦", "縱", "纵", "竪", "세로"})
 """Japanese, Chinese, Korean: the height of a picture, but the depth of a box whose height (高) is given too."""
+_UPRIGHT_AND_WIDE = frozenset("hl")
+_DEEP = frozenset("ps")
+"""Profondità, profondeur, profundidad; spessore: beside h and l."""
 _COMPONENTS = frozenset("ab")
 """A text that has both numbers its components with letters."""
 _NUMBERING = frozenset("abcdefg")
@@ -122,6 +125,10 @@ def labels_in(tokens: list[Token], text: str) -> tuple[frozenset[str], tuple[str
 
 def _labels_in(tokens: list[Token], text: str) -> list[int]:
     places = list(_places(tokens, text))
+    if _UPRIGHT_AND_WIDE.issubset({tokens[at].word for at in places}):
+        # "h 48, l 32, p 14": beside two sides the third is no page.
+        deep = (at for at, one in enumerate(tokens[:-1]) if one.word in _DEEP and tokens[at + 1].type == NUMBER)
+        places = sorted({*places, *deep})
     if not _TURKISH.intersection(token.word for token in tokens):
         places = [at for at in places if tokens[at].word != "en"]
     if _COMPONENTS.issubset({token.word for token in tokens}):

@@ -227,7 +227,7 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
         Fields of the record, `names.TEXTS` among them.
     """
     said = {id(column): named(column.name) for column in columns}
-    for column, meant in _letters(columns, said):
+    for column, meant in (*_turkish(columns, said), *_letters(columns, said)):
         said[id(column)] = meant
     found: dict[str, list[tuple[ColumnMeaning, Column]]] = {}
     for column in columns:
@@ -362,6 +362,18 @@ def _letters(columns: Sequence[Column], said: Mapping[int, ColumnMeaning | None]
         if name is not None:
             out.append((column, ColumnMeaning(name, 99)))
     return out
+
+
+def _turkish(columns: Sequence[Column], said: Mapping[int, ColumnMeaning | None]) -> list[tuple[Column, ColumnMeaning]]:
+    """Return what "En" and "Boy" mean beside each other: width, and the height, or else the length."""
+    short = {bare(one.name).casefold(): one for one in columns if said[id(one)] is None and one.measured}
+    if not {"en", "boy"} <= short.keys():
+        return []
+    upright = any(what is not None and what.field == "height_m" for what in said.values())
+    return [
+        (short["en"], ColumnMeaning("width_m", 99)),
+        (short["boy"], ColumnMeaning(LENGTH if upright else "height_m", 99)),
+    ]
 
 
 def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> list[Column]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import tomlkit
 
@@ -13,7 +13,8 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import NUMBER, Column
 from pipeline.collection.guessing.going_on import goes_on_in
 from pipeline.collection.guessing.names import TEXTS, bare, named, unit_in
-from pipeline.collection.guessing.units import FEET, usual_unit
+from pipeline.collection.guessing.questions import Question, asked_unit
+from pipeline.collection.guessing.units import FEET
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.money import no_money
 from pipeline.collection.record import CHOICES, KINDS, units_of
@@ -36,33 +37,6 @@ _NAMING = 0.5
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _COMMA = re.compile(r"(?<![\d,.])\d+,\d{1,2}(?![\d,.])", re.ASCII)
 _POINT = re.compile(r"(?<![\d,.])\d+\.\d{1,2}(?![\d,.])", re.ASCII)
-
-
-@dataclass(frozen=True)
-class Question:
-    """What a person may decide.
-
-    Attributes
-    ----------
-    key : str
-        By which the choice is given: ``--choose key=...``.
-    text : str
-        The question.
-    options : tuple of str
-        What may be chosen; the first ones are the likeliest.
-    taken : str
-        What is taken where nobody answers.
-    """
-
-    key: str
-    text: str
-    options: tuple[str, ...]
-    taken: str
-
-    def without(self, name: str) -> "Question | None":
-        """Return the question without an option, where it leaves something to choose."""
-        options = tuple(option for option in self.options if option != name)
-        return replace(self, options=options) if options not in ((), (self.taken,)) else None
 
 
 def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:
@@ -223,7 +197,8 @@ class Fields:
             and (column.numeric or (column.measured and column.dimensional <= _NAMING))
             and not any(self._told_unit(name, column))
         }
-        unit = self._common_unit(untold) if untold else self._told_in_common(found)
+        sides = [column for name, column in found.items() if "m" in units_of(name)]
+        unit = self._common_unit(untold, sides) if untold else self._told_in_common(found)
         for name in MAPPABLE:
             column = found.get(name)
             if column is None:
@@ -465,29 +440,10 @@ class Fields:
         told = {self._told_unit(name, column)[0] for name, column in found.items() if "m" in units_of(name)}
         return (told.pop() or "") if len(told) == 1 else ""
 
-    def _common_unit(self, untold: Mapping[str, Column]) -> str:
+    def _common_unit(self, untold: Mapping[str, Column], sides: Sequence[Column]) -> str:
         """Return the unit of the lengths that tell none, which one file has in common, and ask about it."""
-        numbers = [text for column in untold.values() for text in column.filled]
+        numbers = [text for column in sides for text in column.filled]
         return asked_unit([column.name for column in untold.values()], numbers, self.doubts, self.questions)
-
-
-def asked_unit(names: Sequence[str], numbers: Sequence[str], doubts: list[str], questions: list[Question]) -> str:
-    """Return the unit of lengths that tell none, by what numbers in it look like; say so and ask.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Of their columns.
-    numbers : sequence of str
-        As written.
-    doubts, questions : list
-        What is said and asked goes there.
-    """
-    unit, why = usual_unit(numbers)
-    told = ", ".join(map(repr, names))
-    doubts.append(f"no unit is told for {told}: {why}; --choose unit=mm (cm, in, ...) takes another")
-    questions.append(Question("unit", f"in which unit are {told}?", tuple(units_of("height_m")), unit))
-    return unit
 
 
 def _unit_column(column: Column, columns: Sequence[Column], units: Mapping[str, float]) -> Column | None:

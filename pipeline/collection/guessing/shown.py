@@ -86,12 +86,40 @@ def words_of_display(columns: Sequence[Column], found: dict[str, Column], told: 
         ):
             # "Displayed?" is answered by yes and no.
             found["on_display"] = column
+    flag = found.get("on_display")
+    if flag is not None and "on_display" not in told.choices and _holds_ways(flag):
+        # "Posizione" is nearly "esposizione", and says where in a room a thing is.
+        del found["on_display"]
+        found.setdefault("displayed", flag)
     mounts = found.get("support")
     if "displayed" not in found and mounts is not None and "support" not in told.choices and tells_display(mounts):
         found["displayed"] = found.pop("support")
         told.doubts.append(f"column {mounts.name!r} is taken to say in words how objects are displayed or held")
     if not {"displayed", "support"} & {*found, *told.choices}:
         _by_what_it_holds(columns, found, told)
+
+
+def room_and_position(able: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:
+    """Take the room for the place where another column tells where in it a thing is: "Salon", and "on the mantel".
+
+    Parameters
+    ----------
+    able : sequence of Column
+        That may name places.
+    found : dict of str to Column
+        Field -> its column; that of the gallery may become how objects are displayed.
+    told : GuessNotes
+        What is said of it; grows.
+    """
+    where = found.get("gallery")
+    if where is None or {"gallery", "displayed"} & {*found.keys() - {"gallery"}, *told.choices}:
+        return
+    room = next((one for one in able if one is not where and one.filled and not _holds_ways(one)), None)
+    if room is None or not _holds_ways(where):
+        return
+    found["gallery"], found["displayed"] = room, where
+    told.doubts.append(f"column {room.name!r} is taken for the room, and {where.name!r} for where in it a thing is")
+    told.questions[:] = filter(None, (one.without(where.name) for one in told.questions))
 
 
 def _by_what_it_holds(columns: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:

@@ -13,10 +13,10 @@ from typing import Any, BinaryIO, cast
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, columns_of
-from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.headings import has_headings
 from pipeline.collection.guessing.long_rows import long_form_of
 from pipeline.collection.guessing.names import named
+from pipeline.collection.guessing.questions import Question
 from pipeline.collection.guessing.text_files import (
     LOOKED_AT,
     delimiter_of,

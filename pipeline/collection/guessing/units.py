@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Sequence
 from statistics import median
 
@@ -26,6 +27,8 @@ FEWEST = 5
 FEET = frozenset({"in", "ft"})
 """Units beside which weights are in pounds."""
 
+_WRITTEN = re.compile(r"\d\s?([\"″”]|''|[^\W\d_]{1,12})(?!\w)")
+"""A number and what may be its unit, in a cell."""
 _FRACTION = re.compile(r"\d/(?:2|4|8|16|32|64)(?!\d)|[½¼¾⅛⅜⅝⅞]")
 _HALF = re.compile(r"1/2(?!\d)|½")
 _PLAIN = re.compile(r"\d+(?:[.,]\d+)?", re.ASCII)
@@ -131,6 +134,9 @@ def usual_unit(texts: Sequence[str]) -> tuple[str, str]:
     (str, str)
         Such as ("mm", "millimetres are taken, for they are large and whole").
     """
+    written = Counter(filter(None, (_written(text) for text in texts)))
+    if written and len(written) == 1 and (unit := next(iter(written))) != "ft":
+        return unit, f"{unit} is taken, in which others are written"
     numbers = [text for text in texts if _PLAIN.fullmatch(text)]
     fractions = [text for text in texts if _FRACTION.search(text)]
     # A half alone is written of centimetres too.
@@ -146,6 +152,13 @@ def usual_unit(texts: Sequence[str]) -> tuple[str, str]:
     if _in_metres(numbers):
         return "m", "metres are taken, for most are small and go to the centimetre"
     return "cm", "centimetres are taken"
+
+
+def _written(text: str) -> str | None:
+    """Return the unit of length that a cell is written in; None where it tells none."""
+    found = _WRITTEN.search(text)
+    unit = None if found is None else unit_of(found[1])
+    return unit if unit is not None and units()[unit].kind == "length" else None
 
 
 def _in_metres(numbers: Sequence[str]) -> bool:

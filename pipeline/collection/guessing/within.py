@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 
 from pipeline.collection.display_words import says_away
 from pipeline.collection.guessing.columns import Column
-from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.names import DESCRIPTION, named
+from pipeline.collection.guessing.questions import Question
 from pipeline.collection.places import LONGEST, ROOM, parted
 
 _PLACED = 0.5
