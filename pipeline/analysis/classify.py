@@ -119,9 +119,7 @@ class _Known(NamedTuple):
     values: AssumedValues
 
 
-def _known_of(
-    item: Item, rules: RuleTable | None, decided: tuple[str, str] | None, house: HouseRules | None
-) -> _Known:
+def _known_of(item: Item, rules: RuleTable | None, decided: tuple[str, str] | None, house: HouseRules | None) -> _Known:
     item = as_displayed(item)
     taken = class_of(item, rules, decided)
     made = as_made(item, taken.name, rules)
