@@ -149,8 +149,8 @@ class ColumnMap(MappingPart):
     )
     opening: bool = Field(
         default=False,
-        description="Of a description only its first sentence counts, which says what a thing is; a title that does not "
-        "say it has the object name ahead.",
+        description="Of a description only its first sentence counts, which says what a thing is; a title that does "
+        "not say it has the object name ahead.",
     )
     behind: tuple[Name, ...] = Field(
         default=(),

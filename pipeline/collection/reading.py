@@ -440,10 +440,8 @@ class RowReader:
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), held)))
         if not values.get("case") and "case" not in self._mapping.columns:
             values["case"] = case_in(values.get("displayed") or "")
-        photographs = self._mapping.images
-        values["image"] = of_pattern(
-            photographs.pattern, values["object_number"], first_of(str(values.get("image") or ""))
-        )
+        photographs, shown = self._mapping.images, first_of(str(values.get("image") or ""))
+        values["image"] = of_pattern(photographs.pattern, values["object_number"], shown)
         if values["image"] and not values.get("image_credit"):
             values["image_credit"] = photographs.credit
         provenance = tuple(sorted(cells.provenance, key=lambda of: of.field))
