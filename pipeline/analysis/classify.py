@@ -16,6 +16,7 @@ from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of, tak
 from pipeline.analysis.furniture import furniture_of, in_furniture
 from pipeline.analysis.house.matching import NO_EFFECT, HouseEffect, HouseRules
 from pipeline.analysis.mounts import MountGuess, mount_of
+from pipeline.analysis.named_stuff import FLAT, as_made
 from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.rules import Readings, readings
 from pipeline.analysis.scene_parameters import SceneParameters, material_of
@@ -105,21 +106,34 @@ def house_effect(
     item: Item, house: HouseRules, rules: RuleTable | None = None, decided: tuple[str, str] | None = None
 ) -> HouseEffect:
     """Return what a museum's house rules come to for an object: see `classify`."""
-    return _known_of(as_displayed(item), rules, decided, house)[2]
+    return _known_of(item, rules, decided, house).house
 
 
-def _known_of(
-    item: Item, rules: RuleTable | None, decided: tuple[str, str] | None, house: HouseRules | None
-) -> tuple[TakenClass, ObjectClass, HouseEffect, AssumedValues]:
-    """Return what an object is taken for, the row of its class, what house rules come to for it, and all tables."""
+class _Known(NamedTuple):
+    """A record with what else it tells, what it is taken for, its class, what house rules come to, and all tables."""
+
+    item: Item
+    taken: TakenClass
+    row: ObjectClass
+    house: HouseEffect
+    values: AssumedValues
+
+
+def _known_of(item: Item, rules: RuleTable | None, decided: tuple[str, str] | None, house: HouseRules | None) -> _Known:
+    item = as_displayed(item)
     taken = class_of(item, rules, decided)
+    made = as_made(item, taken.name, rules)
+    if made is not item and decided is None and (item.object_name or item.classification):
+        # What a title alone names is no surer for what it says that is made of.
+        again = class_of(made, rules)
+        taken = taken if again.name in FLAT else again
     values = assumed() if rules is None else rules.values
     row = values.classes[taken.name]
     if house is None:
-        return taken, row, NO_EFFECT, values
-    mounts = WHEN_HELD in row.models or in_case(item, row)
-    said = house.effect(item, row.name, as_told(item, row).support or row.support, mounts=mounts)
-    return taken, row, said, values
+        return _Known(made, taken, row, NO_EFFECT, values)
+    mounts = WHEN_HELD in row.models or in_case(made, row)
+    said = house.effect(made, row.name, as_told(made, row).support or row.support, mounts=mounts)
+    return _Known(made, taken, row, said, values)
 
 
 def _undecided(scene: Scene, values: AssumedValues) -> Scene:
@@ -147,9 +161,11 @@ def classify(
     house   : what the museum states once for many objects; None for nothing
     raises  : KeyError for a decided class that is no row of classes.csv
     """
-    item = as_displayed(item)
-    taken, row, said, values = _known_of(item, rules, decided, house)
-    scene = _scene(item, row, taken.words, values, said)
+    made, taken, row, said, values = _known_of(item, rules, decided, house)
+    scene = _scene(made, row, taken.words, values, said)
+    if made.material != item.material:
+        scene = replace(scene, assumptions=(say.MADE_AS_NAMED(words=made.material), *scene.assumptions))
+    item = made
     hanging = said.hanging(item) or scene.hanging
     scene = replace(scene, hanging=hanging, statements=said.statements, chances=taken.chances)
     return in_furniture(_undecided(scene, values), said, values)
@@ -162,8 +178,7 @@ def furniture_kind(
     house: HouseRules | None = None,
 ) -> Furniture:
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
-    item = as_displayed(item)
-    taken, row, said, values = _known_of(item, rules, decided, house)
+    item, taken, row, said, values = _known_of(item, rules, decided, house)
     stance = _stance(item, row, taken.words, values, said)
     return furniture_of(on_floor(item, stance.shape), row.name, stance.support, said).furniture
 

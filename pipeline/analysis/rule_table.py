@@ -142,9 +142,9 @@ a flat one."""
 _IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")
 WORD = re.compile(r"[^\W\d_]+")
 _SMALL_WORDS = (
-    "of|with|for|in|from|by|and|on|showing|depicting",
+    "of|with|containing|for|in|from|by|and|on|showing|depicting",
     "mit|von|aus|und|fur|zum|zur|als|der|eines|einer",
-    "avec|de|du|des|et|a|au|aux|pour|sur",
+    "avec|contenant|de|du|des|et|a|au|aux|pour|sur",
     "di|da|con|per|al|alla|su|del|della|dello|dei|degli|delle|dal|dalla",
     "y|para|sobre|e|com|em|do|dos|das",
     "met|van|en|voor|op",

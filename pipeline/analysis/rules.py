@@ -45,8 +45,14 @@ _OF_MANY = re.compile(
 """What says that there are several of the things named behind it: Ensemble de tables consoles."""
 _KIND = re.compile(r"\(\s*([^()]+?)\s*\)\s*$")
 """What stands in brackets at the end and may say what the thing itself is: Brasão (desenho)."""
-_MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
-"""What a maker calls a thing, which is no model of it: Clock Model No. 101."""
+_MARK = re.compile(
+    r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)|\bmodell? [b-z]\b"
+)
+"""What a maker calls a thing, which is no model of it: Clock Model No. 101, Model T."""
+_MODEL = re.compile(
+    r"\s*(?:(?:an?|working|scale|small|large|sectioned|sectional|cutaway)\s+)*(modell?)\s+(?=[^\W\d_]{2,})"
+)
+"""How a name begins that calls its thing a model with no word between: Model hand loom."""
 _IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])")
 """What stands ahead of a thing made small: miniature furniture is no picture."""
 _SMALL_BEHIND = re.compile(r",\s*miniature\s*$")
@@ -79,7 +85,7 @@ _IN_FULL = re.compile(r"[^のとやにいるたなを\s]{4,}")
 _FIGURES = ("statue", "standing_figure", "figurine")
 """Classes of what a picture may show by the same name: a picture of Kannon is a figure of Kannon too."""
 _BESIDE = re.compile(
-    r"\s*(?:with|in|by|on|showing|depicting|mit|aus|auf|avec|sur|con|per|su|para|sobre|com|em|met|op|cu|din|pe"
+    r"\s*(?:with|containing|in|by|on|showing|depicting|mit|aus|auf|avec|sur|con|per|su|para|sobre|com|em|met|op|cu|din|pe"
     r"|im|z|ze|na|s|se|av|af|med|fran|fra|из|на|с|με|απο|σε)\s*"
 )
 """Words behind which stands what a thing has, shows, stands on or is made of, and not what it is."""
@@ -321,6 +327,8 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     kind = _KIND.search(folded)
     out = [] if kind is None else [one for one in _spelt(of, kind.group(1).split()) if _pictures(of, one)]
     out += [] if start is None else _spelt(of, WORD.findall(start.group()))
+    small = _MODEL.match(folded)
+    out += [] if small is None or BREAK.match(folded, small.end() - 1) else _spelt(of, [small.group(1)])
     piece = _OF_SERVICE.search(folded)
     for inner in () if piece is None else (BREAK.split(piece.group(1))[0], piece.group(1)):
         out += (*_spelt(of, WORD.findall(inner)), *_spelt(of, WORD.findall(inner)[-1:]))

@@ -148,7 +148,9 @@ class ColumnMap(MappingPart):
         'thing is held, "Atrium, hung overhead"; that part tells it, and the gallery goes without.',
     )
     opening: bool = Field(
-        default=False, description="Of a description only its first sentence counts, which says what a thing is."
+        default=False,
+        description="Of a description only its first sentence counts, which says what a thing is; a title that does "
+        "not say it has the object name ahead.",
     )
     behind: tuple[Name, ...] = Field(
         default=(),

@@ -22,6 +22,7 @@ from pipeline.collection.limits import STANDARD, Limits, Meter
 from pipeline.collection.mapping import ColumnMap, Mapping, check_header
 from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured import fill, is_dimension
+from pipeline.collection.naming import titled
 from pipeline.collection.opening import open_source
 from pipeline.collection.places import case_in, parted
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
@@ -439,13 +440,12 @@ class RowReader:
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), held)))
         if not values.get("case") and "case" not in self._mapping.columns:
             values["case"] = case_in(values.get("displayed") or "")
-        photographs = self._mapping.images
-        values["image"] = of_pattern(
-            photographs.pattern, values["object_number"], first_of(str(values.get("image") or ""))
-        )
+        photographs, shown = self._mapping.images, first_of(str(values.get("image") or ""))
+        values["image"] = of_pattern(photographs.pattern, values["object_number"], shown)
         if values["image"] and not values.get("image_credit"):
             values["image_credit"] = photographs.credit
         provenance = tuple(sorted(cells.provenance, key=lambda of: of.field))
+        titled(values, self._mapping.columns)
         values.update(gallery=gallery, on_display=on_display, provenance=provenance, problems=tuple(cells.problems))
         return Item(**values)
 

@@ -4,6 +4,7 @@ from pipeline.records.phrase import Clause
 
 SUPPORT = Clause("support: {support}, assumed for: {told}")
 SUPPORT_FIXED = Clause("support: {support}, assumed for a post that stands in a footing")
+MADE_AS_NAMED = Clause("material: {words}, as its name or its title says")
 SUPPORT_TOLD = Clause("support: {support}, as its record says on what it stands")
 DISPLAYED = Clause("support: {support}, as its record says of its display: {words}")
 SAID_OTHERWISE = Clause(

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
-from unicodedata import combining, normalize
 
 from pipeline.collection.dimensions import parse
-from pipeline.collection.dimensions.structured import plain_text, words_of
+from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.names import ARTIST, CALLED, DESCRIPTION, TEXTS, named, path_of, plain
-from pipeline.tables import table
+from pipeline.collection.naming import names_thing
 
 SAYING = ("object_name", "classification", "medium", "material")
 """Fields beside which a title may be anything."""
@@ -31,20 +28,8 @@ _FACE = 2
 _MORE = 1.25
 """How many times more words titles have than names (judgement)."""
 
-_HEAD = re.compile(
-    r"[,;:(\u2013]|\s-\s|(?<=\w)\s+(?:with|without|for|from|by|in|showing|made|decorated|painted|mit|ohne|aus|für|avec|sans"
-    r"|pour|con|senza|per|sin|para|com|sem|met|zonder|voor|med|uten|utan|za|ze|se|bez)\s",
-    re.IGNORECASE,
-)
-"""What ends the part of a title in which its thing is named."""
-
-_COUNTED = re.compile(
-    r"\A(?:(?:an?|the|one|two|three|four|pair|set|of|ein|eine|un|une|uno|una|um|uma|een|ett)\s+)+", re.IGNORECASE
-)
-"""What stands before its name: "a pair of"."""
-
-_SHORT, _FEWEST, _MOST = 4, 2, 0.5
-"""Words of such a part at the most, and how many titles and what share of them must name things (judgement)."""
+_FEWEST, _MOST = 2, 0.5
+"""How many titles and what share of them must name things (judgement)."""
 
 
 def name_and_title(
@@ -132,37 +117,13 @@ def _bodily(texts: Sequence[Column], filled: set[str], title: Column) -> bool:
 
 
 def _names_things(titles: Sequence[str]) -> bool:
-    """Whether most titles are short names of things that are no pictures: their first or their last word is one."""
-    words, endings = _things()
-    named = 0
-    for title in titles:
-        said = _COUNTED.sub("", words_of(title).strip(), count=1)
-        head = re.findall(r"[^\W\d_]+", _folded(_HEAD.split(said, maxsplit=1)[0]))
-        if 0 < len(head) <= _SHORT:
-            named += not words.isdisjoint((head[0], head[-1], " ".join(head))) or head[-1].endswith(endings)
+    """Whether most titles are short names of things that are no pictures."""
+    named = sum(map(names_thing, titles))
     return named >= _FEWEST and named >= _MOST * len(titles)
 
 
-@cache
-def _things() -> tuple[frozenset[str], tuple[str, ...]]:
-    """Return the names of things that hang flat neither on nor as a wall, and the endings of such names."""
-    entries = {
-        _folded(entry)
-        for row in table("rules")
-        if row["class"] not in ("framed", "wall_painting", "installation")
-        for entry in row["words"].split("|")
-        if entry
-    }
-    endings = tuple(entry[1:] for entry in entries if entry[0] == "*")
-    return frozenset(entry for entry in entries if entry[0] != "*"), endings
-
-
-def _folded(text: str) -> str:
-    return "".join(one for one in normalize("NFKD", text) if not combining(one)).casefold()
-
-
 def in_place_of_title(able: Mapping[str, Sequence[Column]], found: Mapping[str, Column]) -> Column | None:
-    """Return the description of things that have a name and no title: it says more of each than its name.
+    """Return the shortest description of things that have a name and no title: it says more of each than its name.
 
     Parameters
     ----------
@@ -172,7 +133,7 @@ def in_place_of_title(able: Mapping[str, Sequence[Column]], found: Mapping[str, 
     name, title = found.get("object_name"), found.get("title")
     if name is None or not name.filled or (title is not None and title.filled):
         return None
-    return next((one for one in able.get(DESCRIPTION, ()) if one.filled and one is not name), None)
+    return min((one for one in able.get(DESCRIPTION, ()) if one.filled and one is not name), key=_words, default=None)
 
 
 def naming_the_rest(found: Mapping[str, Column], chosen: Mapping[str, str]) -> bool:
