@@ -1,7 +1,7 @@
 """The compiler asks itself the same things many times over: here it is answered sooner, and answered the same.
 
 Most of what a kernel takes to compile is numba's own Python, not LLVM.  A fifth of it compares the options that
-functions are compiled with, two dictionaries of forty properties whenever an overload is looked up; an eighth finds out
+functions are compiled with, two dictionaries of forty properties whenever an overload is looked up; another finds out
 anew, at each ``+`` of two numbers, that they are neither arrays nor lists.  The machine code is the same without this.
 """
 
@@ -10,7 +10,7 @@ from typing import Any
 from numba.core import types
 from numba.core.targetconfig import TargetConfig
 
-_NUMBERS = (types.Number, types.Boolean)
+_SIMPLE = (types.Number, types.Boolean, types.Array)
 
 # numba has no types.
 _Options: Any = TargetConfig
@@ -47,7 +47,7 @@ def hash_of_options(one: Any) -> int:
 
 
 def call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
-    """Return the signature of a call of one of numba's own functions; of numbers alone it is found once.
+    """Return the signature of a call of one of numba's own functions; of numbers and arrays it is found once.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
     Signature
         As ``Function.get_call_type`` does.
     """
-    if kws or not all(isinstance(arg, _NUMBERS) for arg in args):
+    if kws or not all(isinstance(arg, _SIMPLE) for arg in args):
         return _ask(function, context, args, kws)
     asked = function, context, tuple(args)
     found = _known.get(asked)

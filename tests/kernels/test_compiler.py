@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+from collections.abc import Iterable
 from itertools import product
 from typing import Any
 
@@ -19,6 +20,8 @@ from numba.extending import overload
 from pipeline.kernels.compiler import _ask, call_type, hash_of_options, same_options
 
 NUMBERS = (types.boolean, types.int64, types.uint8, types.float32, types.float64, types.complex128, types.literal(0))
+ARRAYS = (types.float64[::1], types.float64[:], types.Array(types.int64, 2, "C", readonly=True))
+OPERATORS = ("add", "sub", "mul", "truediv", "floordiv", "pow", "lt", "eq", "and_")
 
 
 def options(**chosen: Any) -> Any:
@@ -47,12 +50,20 @@ def test_options_are_equal_where_all_of_them_are() -> None:
     assert kinds[0] != "options"
 
 
-@pytest.mark.parametrize("name", ["add", "sub", "mul", "truediv", "floordiv", "pow", "lt", "eq", "neg", "iadd", "and_"])
-def test_calls_of_numbers_are_typed_as_numba_types_them(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [
+        *((name, product(NUMBERS, NUMBERS)) for name in (*OPERATORS, "iadd")),
+        *((name, product(ARRAYS, (*ARRAYS[:1], *NUMBERS))) for name in (*OPERATORS, "getitem")),
+        ("neg", product((*NUMBERS, *ARRAYS))),
+        ("setitem", product(ARRAYS, NUMBERS, (*ARRAYS[:1], types.int64, types.float64))),
+    ],
+)
+def test_calls_are_typed_as_numba_types_them(name: str, asked: Iterable[tuple[Any, ...]]) -> None:
     context = cpu_target.typing_context
     context.refresh()
     function = context.resolve_value_type(getattr(operator, name))
-    for args in product(NUMBERS, repeat=1 if name == "neg" else 2):
+    for args in asked:
         try:
             own = _ask(function, context, args, {})
         except NumbaError:
