@@ -26,7 +26,8 @@ from pipeline.resources import code_version, replacing
 
 MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA = "motions", "charts", "pictures", "histories", "spectra"
 SELF_TESTS, TRADEOFFS, HOUSE, THUMBNAILS, STOCKS = "selftests", "tradeoffs", "house", "thumbnails", "stocks"
-KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA, SELF_TESTS, TRADEOFFS, HOUSE, THUMBNAILS, STOCKS)
+SAMPLES = "samples"
+KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA, SELF_TESTS, TRADEOFFS, HOUSE, THUMBNAILS, STOCKS, SAMPLES)
 """What is kept: each kind is a folder."""
 
 LARGEST = 1 << 28

@@ -21,6 +21,7 @@ from pipeline.cache import (
     KINDS,
     MOTIONS,
     PICTURES,
+    SAMPLES,
     SELF_TESTS,
     SPECTRA,
     STOCKS,
@@ -108,6 +109,11 @@ def put_thumbnails(folder: Path) -> None:
     Album(Cache(folder), ImageLimits(folder=folder.parent)).gather(["a.png"], Silent())
 
 
+def put_sample(folder: Path) -> None:
+    groups = {"sliding None []": ("sliding", None, {"tail": 30.0})}
+    Cache(folder).put(SAMPLES, key_of("objects"), CacheEntry({"groups": groups, "models": ["sliding", "standing"]}))
+
+
 def put_stock(folder: Path) -> None:
     scene = Scene(Item("1", "A"), "vase", "", Support.FREESTANDING, (), {})
     Cache(folder).put(STOCKS, key_of("a page"), stock_of([Assessment(scene, (), ())], {}).packed())
@@ -124,6 +130,7 @@ PUT: dict[str, Callable[[Path], None]] = {
     HOUSE: put_house,
     THUMBNAILS: put_thumbnails,
     STOCKS: put_stock,
+    SAMPLES: put_sample,
 }
 
 

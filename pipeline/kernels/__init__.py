@@ -16,6 +16,7 @@ import numba
 import numpy as np
 from numba.core import event
 
+from pipeline.kernels.compiler import hasten
 from pipeline.quantities import Array
 from pipeline.records.protocols import tell_of_compiling
 
@@ -133,12 +134,13 @@ class _Compilations(event.Listener):
         tell_of_compiling(self._ended, self._begun)
 
 
+hasten()
 _register: Any = event.register  # numba has no types
 _register("numba:compile", _Compilations())
 
 # error_model="numpy": a division by zero gives inf, as in the arrays around it.  Nothing is reordered: the order of
-# operations decides overturning.
-_compiled: Any = functools.partial(numba.njit, cache=True, nogil=True, error_model="numpy")
+# operations decides overturning.  No code of C calls a kernel.
+_compiled: Any = functools.partial(numba.njit, cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
 
 kernel: Callable[..., Any] = _compiled()
 """Decorator of a compiled function that makes arrays, or that Python calls."""
@@ -148,13 +150,13 @@ kernel: Callable[..., Any] = _compiled()
 bare: Callable[..., Any] = _compiled(_nrt=False)
 """Decorator of a compiled function that makes no array: it counts no references to those that it is given."""
 
-inner: Callable[..., Any] = _compiled(_nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+inner: Callable[..., Any] = _compiled(_nrt=False, no_cpython_wrapper=True)
 """Decorator of such a function that only kernels call: the entries for others took a quarter of the compilation."""
 
 # Of what fastmath allows only this: a product and a sum are rounded once instead of twice, as compilers of C do without
 # being asked, which makes long Runge-Kutta steps a fifth faster and closed forms no faster.  The order of operations
 # stays as it is written.  A processor that cannot fuse gives other last digits.
-fused: Callable[..., Any] = _compiled(_nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True, fastmath={"contract"})
+fused: Callable[..., Any] = _compiled(_nrt=False, no_cpython_wrapper=True, fastmath={"contract"})
 """Decorator of such a function that may fuse products and sums."""
 
 inlined: Callable[..., Any] = _compiled(inline="always")

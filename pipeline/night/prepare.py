@@ -26,7 +26,7 @@ from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.response_charts.grouping import group_name, groups
 from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.stakes import VALUE_PER_C
-from pipeline.cache import PICTURES, Cache, CacheEntry, key_of
+from pipeline.cache import PICTURES, SAMPLES, Cache, CacheEntry, key_of
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.listing import Listing
 from pipeline.collection.object_index import ObjectIndex
@@ -44,7 +44,7 @@ from pipeline.night.unit_tasks import ChartTask
 from pipeline.operations.report_status import presentation, terms_of
 from pipeline.operations.workspace import Workspace
 from pipeline.quantities import G
-from pipeline.records import Chart, Model, Motion, Progress, RunRecord, Scene
+from pipeline.records import Chart, Item, Model, Motion, Progress, RunRecord, Scene
 from pipeline.records import phrases as say
 from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.reading import INVENTORY, READING
@@ -222,21 +222,34 @@ def illustrate(context: RunContext, pictures: Pictures, progress: Progress) -> N
 
 
 def admit(
-    context: RunContext, index: ObjectIndex, chosen: Listing, x_azimuth: float
+    workspace: Workspace, context: RunContext, index: ObjectIndex, chosen: Listing, x_azimuth: float
 ) -> tuple[list[ChartTask], frozenset[str]]:
-    """Decide which response charts are used (see `popular`).
+    """Decide which response charts are used (see `popular`); what the same objects asked for last time is kept.
 
     returns : those to be built before the sheets, and the names of the models that a sample of the objects is run with
     """
-    scenes, every = _sample(index, assessed(chosen, context.stores), context.rules, context.house)
-    found = _paying(scenes, every, context.measures, x_azimuth)
-    context.admitted = frozenset(found)
+    sample, every = _sample(assessed(chosen, context.stores))
+    # They are read in any case: damage to what is kept of them is told.
+    items = index.items(sample.column("object_number"))
+    settings = workspace.settings
+    own = rules_digest(settings), tables_digest(settings), house_digest(settings), repr(context.measures)
+    key = key_of(own, x_azimuth, every, [(one.object_number, one.digest) for one in sample])
+    cache = None if context.kept is None else Cache(context.kept)
+    entry = None if cache is None else cache.get(SAMPLES, key)
+    if entry is None:
+        scenes = _classed(items, context.rules, context.house)
+        found = _paying(scenes, every, context.measures, x_azimuth)
+        told = {name: (model.name, angle, alike) for name, (model, angle, alike) in sorted(found.items())}
+        entry = CacheEntry({"groups": told, "models": sorted({name for scene in scenes for name in scene.models})})
+        if cache is not None:
+            cache.put(SAMPLES, key, entry)
+    context.admitted = frozenset(entry.said["groups"])
     tasks = [
-        ChartTask(model.name, motion, angle, alike)
-        for _, (model, angle, alike) in sorted(found.items())
+        ChartTask(model, motion, angle, alike)
+        for model, angle, alike in entry.said["groups"].values()
         for motion in context.motions.values()
     ]
-    return tasks, frozenset(name for scene in scenes for name in scene.models)
+    return tasks, frozenset(entry.said["models"])
 
 
 def assessed(objects: Listing, stores: bool) -> Listing:
@@ -261,16 +274,20 @@ def popular(
     What an object is found to do must not hang on which others happen to be worked on with it, or on who asked first.
     Of the measures few make something of many objects that one chart could serve (`Measure.charted`).
     """
-    return _paying(*_sample(index, chosen, rules, house), measures, x_azimuth)
+    sample, every = _sample(chosen)
+    items = index.items(sample.column("object_number"))
+    return _paying(_classed(items, rules, house), every, measures, x_azimuth)
 
 
-def _sample(
-    index: ObjectIndex, chosen: Listing, rules: RuleTable | None, house: HouseRules | None
-) -> tuple[list[Scene], int]:
+def _sample(chosen: Listing) -> tuple[Listing, int]:
+    """Return the objects that are looked at, and of how many each is one."""
     every = max(1, len(chosen) // SAMPLE)
-    sample = index.items([one.object_number for one in chosen[::every]])
+    return chosen[::every], every
+
+
+def _classed(items: Mapping[str, Item], rules: RuleTable | None, house: HouseRules | None) -> list[Scene]:
     # What cannot even be planned for is told where it is assessed.
-    return sound(lambda some: [classify(item, rules, house=house) for item in some], list(sample.values())), every
+    return sound(lambda some: [classify(item, rules, house=house) for item in some], list(items.values()))
 
 
 def _paying(scenes: Sequence[Scene], every: int, measures: MeasureCatalogue, x_azimuth: float) -> dict[str, Group]:

@@ -137,7 +137,7 @@ def _planned(
     index = workspace.object_index()
     objects = _chosen(index.objects, chosen)
     context = run_context(workspace, site, index, objects, started)
-    charts, models = admit(context, index, objects, site.manifest.site.x_azimuth)
+    charts, models = admit(workspace, context, index, objects, site.manifest.site.x_azimuth)
     if not chosen:
         staff.begin_compiling(models)
     if charts or staff.compiling:

@@ -180,7 +180,7 @@ def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, pro
     with pictures(workspace, site) as drawing:
         context = run_context(workspace, site, everything, everything.objects, datetime.now(UTC))
         illustrate(context, drawing, progress)
-    charts, _ = admit(context, everything, everything.objects, site.manifest.site.x_azimuth)
+    charts, _ = admit(workspace, context, everything, everything.objects, site.manifest.site.x_azimuth)
     decisions = decisions_in_force(workspace.engine)
     with Staff(workspace.settings.execution) as staff:
         night = Scheduler(workspace, context, everything, everything.objects, decisions, staff, charts)

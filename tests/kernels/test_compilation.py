@@ -100,6 +100,8 @@ def test_kernels_know_nothing() -> None:
             continue
         roots = set(re.findall(r"^(?:from|import) ([\w.]+)", text, flags=re.MULTILINE))
         allowed = {"math", "numpy", "pipeline.kernels", "pipeline.quantities"}
+        if source.name == "compiler.py":
+            allowed = {"typing", "numba.core", "numba.core.targetconfig"}
         assert all(r in allowed or r.startswith("pipeline.kernels.") for r in roots), (source.name, roots)
         assert "fastmath" not in text
 

@@ -137,14 +137,14 @@ class OpenPage:
         self, *, min_row: int = 1, max_row: int | None = None, max_col: int = COLUMN_LIMIT
     ) -> Iterator[tuple[OpenCell, ...]]:
         """Yield the cells of the rows from min_row on, blank ones between too."""
-        due = min_row
+        due, blank = min_row, (_EMPTY,) * max_col
         for line, row in self._rows():
             if max_row is not None and line > max_row:
                 break
             if line < due:
                 continue
             while due < line:
-                yield (_EMPTY,) * max_col
+                yield blank
                 due += 1
             cells: list[OpenCell] = []
             for element in row:
@@ -153,7 +153,7 @@ class OpenPage:
             yield (*cells, *(_EMPTY,) * (max_col - len(cells)))
             due += 1
         while max_row is not None and due <= max_row:
-            yield (_EMPTY,) * max_col
+            yield blank
             due += 1
 
     def _rows(self) -> Iterator[tuple[int, list[Any]]]:

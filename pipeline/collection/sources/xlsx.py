@@ -299,16 +299,21 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
     down = {_name(there) for there in found.merged if there[1] == there[3] and there[0] >= body}
     above: dict[int, tuple[str, tuple[str, str] | None]] = {}
     rows = page.iter_rows(min_row=header_row, max_row=last, max_col=width)
+    # Where no cell is part of others, a row whose cells hold nothing is none: some sheets hold a million of them.
+    alone = not found.merged and not found.computed
     names = 0
     number = 0
     heads: list[list[str]] = []
     places: dict[int, bool] = {}
     for line in range(header_row, last + 1):
-        cells, faults = [""] * width, dict[int, tuple[str, str]]()
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # a date that cannot be becomes an error value, which gets a fault
-                for place, cell in enumerate(next(rows)):
+                row = next(rows)
+                if alone and line >= body and all(cell.value is None for cell in row):
+                    continue
+                cells, faults = [""] * width, dict[int, tuple[str, str]]()
+                for place, cell in enumerate(row):
                     if cell.value is not None:
                         _take(cell, place, cells, faults, places.get(place))
         except (*_DAMAGE, StopIteration) as problem:
