@@ -131,7 +131,7 @@ def test_a_thousand_pieces_of_news_are_on_pages(tmp_path: Path) -> None:
     page = index.read_text(encoding="utf-8")
     assert page.count('<li class="danger">') == 8
     assert f"All {many:,} objects with news" in page
-    assert sentences(changes(*objects), 5)[-1] == f"And {many - 5:,} objects more."
+    assert sentences(changes(*objects), 5)[-1] == f"And {many - 5:,} more objects."
 
 
 def test_what_is_the_same_of_many_is_said_once_and_what_is_acted_on_one_by_one() -> None:

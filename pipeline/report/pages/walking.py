@@ -225,6 +225,9 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
                 # The sign of a diameter: 4 x 2 cm would be a strip as well.
                 told[-1] = f"{pieces} × Ø {text}"
                 continue
+            if name == "second" and "height" in advice.parameters:
+                told[-1] = _("%(parts)s and %(last)s") % {"parts": told[-1], "last": text}
+                continue
             pieces = text if name == "pieces" else pieces
             if name in ("weight", "heaviest") and of_weight:
                 continue
