@@ -94,7 +94,7 @@ def search(asked: Asked) -> DeskAnswer:
     context = {
         "found": found[:SHOWN], "more": len(found) > SHOWN, "page": page, "q": words, "gallery": gallery,
         "state": state, "galleries": run.gallery_names, "total": len(run.objects),
-        "states": run.states, "asked": narrowed, "fragment": asked.site.fragment,
+        "states": run.states, "asked": narrowed, "fragment": asked.site.fragment, "part": asked.fragment,
     }  # fmt: skip
     return DeskAnswer("found.html" if asked.fragment else "search.html", context)
 

@@ -214,6 +214,9 @@ def _pieces(sentence: str, where: str) -> Iterable[tuple[str, str | None]]:
 AT_LEAST = frozenset({"clearance", "clearance_m", "stroke", "platform", "width", "force", "moment"})
 """Numbers of measures of which less is too little: they are rounded up."""
 
+_UNWEIGHED = frozenset({"weight", "heaviest"})
+"""Masses that nobody weighed: a third digit would claim too much."""
+
 _EIGHTHS = ("", "⅛", "¼", "⅜", "½", "⅝", "¾", "⅞")
 
 
@@ -244,6 +247,8 @@ def by_hand(units: Units) -> Write:
         up = name in AT_LEAST
         if unit == "m":
             return inches(value, up=up) if pounds else units.text(by_tape(value, up=up), unit)
+        if name in _UNWEIGHED:
+            return f"{significant(value / mass, 2)}{_THIN}{unit_of_mass}"
         if unit == "kg" and pounds:
             return f"{_weight(value / mass, up=up)}{_THIN}{unit_of_mass}"
         if unit == "N" and not pounds and 0.0 < value < G:

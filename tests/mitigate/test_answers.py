@@ -79,7 +79,7 @@ def test_whoever_builds_for_a_mass_that_is_assumed_is_told_what_it_may_be(motion
     times, likely, weight, most, heaviest = map(
         float,
         re.findall(r"must hold ([\d.]+) times its weight.* That is (\d+)\skg if it weighs (\d+)\skg, as is likeliest, "
-                   r"and (\d+)\skg if (\d+)\skg, the most", told)[0],
+                   r"and (\d+)\skg if it weighs (\d+)\skg, the most", told)[0],
     )  # fmt: skip
     assert (likely / weight, most / heaviest) == pytest.approx((times, times), rel=0.1)
     assert most / likely == pytest.approx(mass.high / mass.value, rel=0.1)
