@@ -55,6 +55,15 @@ def test_the_words_that_a_curator_reads() -> None:
     assert news_line(accepted).sentence == "Decided: 1 t: risk accepted, by A.B."
 
 
+def test_a_measure_that_is_in_place_and_not_enough_is_said_to_be() -> None:
+    surer = replace(ACT, band="almost certain")
+    for measure, told in (("fasten", "that is not enough: fasten it"), ("clamps", "fasten it")):
+        made = Settled(True, measure, "", "Ann")
+        one = ObjectChange("1", "t", "g", surer, ACT, decided=(made,))
+        assert one.kind is NewsKind.STILL
+        assert news_line(one).text.endswith(f"harm was almost certain, and is likely: {told}")
+
+
 @pytest.mark.parametrize(
     ("more", "said"),
     [

@@ -196,8 +196,8 @@ def title_of(errand: Errand) -> str:
 
 
 def number(value: float) -> str:
-    """Write hours or a cost with two significant digits: they are judgement, with ranges of a factor of two and more."""
-    return count(round(value, 1 - floor(log10(value)))) if value >= 99.5 else significant(value, 2)
+    """Write hours or a cost with two significant digits: they are judgement, with wide ranges."""
+    return count(round(round(value, 1 - floor(log10(value))))) if value >= 99.5 else significant(value, 2)
 
 
 def given(value: float) -> str:

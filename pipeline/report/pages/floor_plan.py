@@ -164,7 +164,7 @@ def _row(place: _Place, assessment: Assessment, units: Units) -> PlaceView:
 
 def _across(first: str, second: str) -> str:
     """Return two lengths by each other, with one unit where it is a word behind both."""
-    return f"{first.removesuffix(second.split()[-1]).rstrip()} × {second}"
+    return f"{first.removesuffix(second.rsplit(maxsplit=1)[-1]).rstrip()} × {second}"
 
 
 def _tight(spacings: Sequence[SpacingView]) -> list[SpacingView]:

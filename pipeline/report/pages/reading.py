@@ -108,12 +108,13 @@ def reading_view(settings: Mapping[str, Any]) -> ReadingView:
 
 
 _AWAY = re.compile(
-    r"(?P<number>[\d,]+) objects? taken not to be on display, as the name of the location says: (?P<places>.*)", re.DOTALL
+    r"(?P<number>[\d,]+) objects? taken not to be on display, as the name of the location says: (?P<places>.*)",
+    re.DOTALL,
 )
 
 
 def _settled(message: str) -> str:
-    """Say in the reader's language what was settled by choice; how to settle it otherwise is on the page of the import."""
+    """Say in the reader's language what was settled by choice; what settles it otherwise is on the import's page."""
     found = _AWAY.fullmatch(message)
     if found is None:
         return message
