@@ -118,7 +118,7 @@ def summary_lines(summary: "Summary") -> list[str]:
         count(summary.watch, "  to watch: harm is unlikely"),
         count(summary.fine, "  are fine: harm is very unlikely, or excluded"),
         *([count(open_, "  of these, one measurement may change what is decided")] if open_ else []),
-        count(summary.cannot, "cannot be assessed, because this is not recorded:"),
+        count(summary.cannot, "cannot be assessed" + (", because this is not recorded:" if summary.cannot else "")),
     ]
     reasons = list(summary.missing.items())
     lines += [f"  {'':>{width}}    {number:>4}  {_short(reason)}" for reason, number in reasons[:5]]
@@ -154,8 +154,9 @@ def summary_lines(summary: "Summary") -> list[str]:
             "",
             *(f"  {printable(sentence)}" for sentence in sentences(changes)),
             f"  Since the last run: {len(changes.added)} objects new, {len(changes.removed)} gone, "
-            f"{len(changes.moved)} moved, {len(changes.inputs)} changed; {len(changes.worsened)} verdicts worse, "
-            f"{len(changes.fixed)} fixed, {len(changes.others)} other; {len(changes.motions)} motions changed",
+            f"{len(changes.moved)} moved, {len(changes.inputs)} changed; of single checks {len(changes.worsened)} no "
+            f"longer pass, {len(changes.fixed)} failed and pass, {len(changes.others)} are otherwise than they were; "
+            f"{len(changes.motions)} motions changed",
         ]
     lines += ["", *_reading_lines(summary)]
     if summary.report is not None:

@@ -63,11 +63,14 @@ def _kinds(changes: RunChanges) -> list[tuple[str, Sequence[str]]]:
 def _verdict(change: VerdictChange) -> str:
     why = "; ".join(f"{cause.kind} {cause.what}" for cause in change.causes) or "nothing that the runs keep differs"
     what = f"{change.object_number} ({change.gallery}) {change.model}, {change.level}"
-    return f"{what}: {change.before} -> {change.after}, because of {why}"
+    return f"{what}: {change.before or 'none'} -> {change.after or 'none'}, because of {why}"
 
 
 def _field(change: FieldChange) -> str:
-    return f"{change.name} {_value(change.before)} -> {_value(change.after)}"
+    before, after = _value(change.before), _value(change.after)
+    if before == after:
+        return f"{change.name} {after}: another range or source"
+    return f"{change.name} {before} -> {after}"
 
 
 def _value(value: Any) -> str:

@@ -52,6 +52,7 @@ HTMX = "sha384-2OatzQy1H+Zd/IIrjr1TcuDGqLXeHhbooAyJY1KdQMKnr4LZ22k31GBLdYKHmVjg"
 
 STATIC = {
     "htmx.min.js": "text/javascript",
+    "desk.js": "text/javascript",
     "desk.css": "text/css",
     "style.css": "text/css",
 }
@@ -120,6 +121,7 @@ def desk_app(config: Path, serving: ServeSettings | None = None) -> Guard:
         Route("/static/{name}", pages.static),
         Route("/report/{name}", pages.report),
         Route("/picture", pages.picture),
+        Route("/here", pages.here),
         Route("/sign-in", pages.sign_in, methods=["GET", "POST"]),
         Route("/sign-out", pages.sign_out, methods=["POST"]),
     ]
@@ -247,7 +249,15 @@ class _Pages:
     def _told(self, request: Request, who: Person | None, words: str, status: int) -> Response:
         return self._page(request, who, DeskAnswer("told.html", {"words": words}, status))
 
+    def here(self, request: Request) -> Response:
+        """Say that the desk answers who asks, by the token that the browser's forms are to carry."""
+        who = person(request, self.site.serving, self.site.workspace.engine)
+        return self._unknown(request) if who is None else self._with_token(request, who, _TOKEN, 200)
+
     def _unknown(self, request: Request) -> Response:
+        if request.url.path == "/here" or "hx-request" in request.headers:
+            # A page's own script asks: it says so there, and what was typed stays.
+            return Response(status_code=401)
         if self.site.serving.identity == "accounts":
             return RedirectResponse("/sign-in", 303)
         return self._told(request, None, "The proxy did not say who you are: sign in there.", 401)

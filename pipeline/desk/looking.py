@@ -94,7 +94,7 @@ def search(asked: Asked) -> DeskAnswer:
     context = {
         "found": found[:SHOWN], "more": len(found) > SHOWN, "page": page, "q": words, "gallery": gallery,
         "state": state, "galleries": run.gallery_names, "total": len(run.objects),
-        "states": run.states, "asked": narrowed, "fragment": asked.site.fragment,
+        "states": run.states, "asked": narrowed, "fragment": asked.site.fragment, "part": asked.fragment,
     }  # fmt: skip
     return DeskAnswer("found.html" if asked.fragment else "search.html", context)
 
@@ -175,8 +175,8 @@ def _recorded(facts: ObjectFacts, run: RunFacts) -> list[tuple[str, str, str]]:
     """Return the record of an object: what, its value in the reader's units, and who says so."""
     item, notes = facts.item, {of.field: of for of in facts.item.provenance}
     texts = ("object_name", "classification", "medium", "dimensions", "gallery", "case")
-    # As the cells take them: eighths of an inch, not 12.4 for 12 3/8.
-    written = by_hand(run.units)
+    # As the cells take them: eighths of an inch, not 12.4 for 12 3/8; what is recorded in centimetres is not rounded.
+    written = by_hand(run.units) if run.units.pounds else lambda _name, value, unit: run.units.text(value, unit)
     out = [(name_told(name), str(getattr(item, name)), "") for name in texts if getattr(item, name)]
     for one in measurables():
         value = getattr(item, one.field, None)
@@ -188,11 +188,13 @@ def _recorded(facts: ObjectFacts, run: RunFacts) -> list[tuple[str, str, str]]:
             else written(one.field, value, "" if one.unit == "-" else one.unit)
         )
         of = notes.get(one.field)
+        # Where in the text it stands, nobody at the desk asks.
+        why = of.note.partition("; characters ")[0] if of else ""
         out.append(
             (
                 labels()[one.field],
                 shown,
-                "; ".join(filter(None, (of.written, assumed(of.note, run.units)))) if of else "",
+                "; ".join(filter(None, (of.written, assumed(why, run.units)))) if of else "",
             )
         )
     return out

@@ -16,6 +16,7 @@ from pipeline.desk.run_facts import RunFacts
 from pipeline.records import (
     Assessment,
     Decision,
+    DecisionKind,
     DecisionStatus,
     Found,
     Item,
@@ -32,6 +33,9 @@ from pipeline.report.pages.views import ObjectView, PageView, StateCounts
 from pipeline.report.units import Units
 from pipeline.store.desk import Picture, pictures_of
 from pipeline.store.pages import load_one
+
+_COMPUTED = frozenset({DecisionKind.CLASS, DecisionKind.INSTALLED})
+"""Decisions that the next run computes with."""
 
 KEPT = 2_000
 """Objects that are kept in words: those that people come back to."""
@@ -73,7 +77,7 @@ class ObjectFacts:
     decisions : tuple of DecisionStatus
         In force now, by id.
     changed : bool
-        Whether its record is another than the last run's.
+        Whether its record, or what was decided and is computed with, is another than the last run's.
     pictures : tuple of Picture
         Of its mount.
     """
@@ -143,7 +147,9 @@ class ObjectDesk:
                 while len(self._kept) > KEPT:
                     self._kept.popitem(last=False)
         view, gallery, assessment, wishes = kept
-        return ObjectFacts(item, version, view, gallery, assessment, wishes, standings, digest != then, pictures)
+        # What the last run did not know of, or computed with and holds no longer.
+        changed = digest != then or any(d.kind in _COMPUTED and (d.id in told) != (d in mine) for d in log)
+        return ObjectFacts(item, version, view, gallery, assessment, wishes, standings, changed, pictures)
 
     @staticmethod
     def _in_words(run: RunFacts, page: Page, found: Found, standings: tuple[DecisionStatus, ...]) -> _InWords:

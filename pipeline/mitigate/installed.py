@@ -22,6 +22,7 @@ from pipeline.models.rocking import ROCKING
 from pipeline.models.sliding import SLIDING
 from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import UNTOLD_ISOLATOR, Finding, Likelihood, Numerics, Sampling, Scene, Support
+from pipeline.records.phrases import STANDS_AS
 
 ON_TOP = "Under the motion that its isolator passes on"
 
@@ -147,7 +148,7 @@ def _told(before: Scene, after: Scene, words: str) -> Scene:
     if after.support is not before.support:
         old |= {text for text in before.assumptions if text.startswith("support: ")}
     kept = tuple(text for text in after.assumptions if text not in old)
-    rule = f"{after.rule}; it stands as {words}" if after.support is not before.support else after.rule
+    rule = f"{after.rule}{STANDS_AS}{words}" if after.support is not before.support else after.rule
     return replace(after, parameters={**after.parameters, **told}, assumptions=kept, rule=rule)
 
 

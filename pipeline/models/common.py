@@ -346,15 +346,13 @@ def N_(text: str) -> str:  # noqa: N802 - as gettext has it
     return text
 
 
-def unless_free(scene: Scene, what: str) -> str:
-    """Return the reason why an object that is not free on its support does not {what}; "" when it is free.
+def unless_free(scene: Scene) -> str:
+    """Return the reason why an object that is not free on its support neither rocks nor slides; "" when it is free.
 
     Parameters
     ----------
     scene : Scene
         An object where it stands.
-    what : str
-        A verb, such as "rock".
 
     Returns
     -------
@@ -362,10 +360,10 @@ def unless_free(scene: Scene, what: str) -> str:
         For `Model.applies`.
     """
     reasons = {
-        Support.FASTENED: f"it is fastened to its support, so it does not {what}",
-        Support.HUNG: f"it hangs on a wall, so it does not {what}",
-        Support.SUSPENDED: f"it hangs from above, so it does not {what}",
-        Support.ISOLATED: f"it is fastened to an isolator, so it does not {what} on it",
+        Support.FASTENED: N_("it is fastened to its support"),
+        Support.HUNG: N_("it hangs on a wall"),
+        Support.SUSPENDED: N_("it hangs from above"),
+        Support.ISOLATED: N_("it is fastened to an isolator"),
     }
     return reasons.get(scene.support, "")
 

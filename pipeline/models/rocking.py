@@ -185,7 +185,7 @@ def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tupl
 
 
 def _applies(scene: Scene) -> str:
-    return unless_free(scene, "rock") or needs(scene, "half_width", "cg_height")
+    return unless_free(scene) or needs(scene, "half_width", "cg_height")
 
 
 def _stability(key: str, motion: Motion) -> Chart:

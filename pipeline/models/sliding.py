@@ -92,7 +92,7 @@ def _applies(scene: Scene) -> str:
     # What a mount holds slides on it once its grip is overcome.
     if scene.mount is Mount.SECURED:
         return needs(scene, "friction_static")
-    return unless_free(scene, "slide") or needs(scene, "friction_static")
+    return unless_free(scene) or needs(scene, "friction_static")
 
 
 PATH_FRICTION = 0.05

@@ -368,7 +368,7 @@ def required(motion: Excitation, parameters: Mapping[str, Array]) -> NDArray[np.
 
 
 def _applies(scene: Scene) -> str:
-    return unless_free(scene, "rock or slide") or needs(scene, "half_width", "cg_height", "friction_static")
+    return unless_free(scene) or needs(scene, "half_width", "cg_height", "friction_static")
 
 
 def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tuple[str, str]:

@@ -2,6 +2,9 @@
 
 from pipeline.records.phrase import Clause
 
+STANDS_AS = "; it stands as "
+"""Comes behind the rule of a class where somebody decided how the object stands, and before who did."""
+
 SUPPORT = Clause("support: {support}, assumed for: {told}")
 SUPPORT_FIXED = Clause("support: {support}, assumed for a post that stands in a footing")
 MADE_AS_NAMED = Clause("material: {words}, as its name or its title says")

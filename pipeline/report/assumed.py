@@ -10,7 +10,7 @@ from functools import cache
 from pipeline.analysis.classify import object_classes
 from pipeline.quantities import LENGTHS
 from pipeline.records.phrase import Clause, Number
-from pipeline.records.phrases import PHRASES, SENTENCES
+from pipeline.records.phrases import PHRASES, SENTENCES, STANDS_AS
 from pipeline.records.picture import CHART_WORDS
 from pipeline.report.language import _, local, parted, said
 from pipeline.report.text import bare
@@ -61,6 +61,7 @@ _RULE = re.compile(
     r"""(?:,[ ](?P<kind>\w+)[ ]is[ ]the[ ]likeliest[ ]\((?P<chance>[\d.]+)\))?)?""",
     re.DOTALL | re.VERBOSE,
 )
+_DECIDED = re.compile(r"decided by (?P<who>.*) on (?P<date>\d{4}-\d\d-\d\d): (?P<why>.*)", re.DOTALL)
 _THIN = "\u202f"
 _SI_OF = {"cm/s": "m/s", "MPa": "Pa", "GPa": "Pa"}
 _SIGNS = {"": "", "°": "°", "%": "\u00a0%", "kg/m2": f"{_THIN}kg/m²", "kg/m3": f"{_THIN}kg/m³"}
@@ -109,9 +110,10 @@ def rejected(text: str, units: Units) -> str:
 
 def rule_words(rule: str) -> str:
     """Return by which rule an object is of its class: the rule's name, and in the reader's language why."""
+    rule, *stands = rule.split(STANDS_AS, 1)
     found = _RULE.fullmatch(rule)
     if found is None:
-        return rule
+        return STANDS_AS.join([rule, *stands])
     told = f"{found['name']}: {said(found['why'])}"
     if found["word"]:
         told += " (" + _("named %(word)s") % {"word": found["word"]} + ")"
@@ -125,6 +127,10 @@ def rule_words(rule: str) -> str:
             "chance": local(found["chance"]),
         }
         told += ", " + _("%(kind)s is the likeliest (%(chance)s)") % likeliest
+    for words in stands:
+        decided = _DECIDED.fullmatch(words)
+        how = words if decided is None else _("decided by %(who)s, %(date)s: %(why)s") % decided.groupdict()
+        told = parted((told, _("it stands as %(words)s") % {"words": how}))
     return told
 
 

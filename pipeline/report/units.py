@@ -214,6 +214,9 @@ def _pieces(sentence: str, where: str) -> Iterable[tuple[str, str | None]]:
 AT_LEAST = frozenset({"clearance", "clearance_m", "stroke", "platform", "width", "force", "moment"})
 """Numbers of measures of which less is too little: they are rounded up."""
 
+_UNWEIGHED = frozenset({"weight", "heaviest"})
+"""Masses that nobody weighed: a third digit would claim too much."""
+
 _EIGHTHS = ("", "⅛", "¼", "⅜", "½", "⅝", "¾", "⅞")
 
 
@@ -226,7 +229,8 @@ def by_hand(units: Units) -> Write:
 
     A force is written as the weight that it is, in kilograms (grams below one) or pounds, and a moment as such a weight
     at an arm of a metre or a foot: nobody in a gallery thinks in newtons.  Where lengths are in inches or feet they are
-    in eighths of an inch, and masses in pounds.  The checks of a measure keep newtons.
+    in eighths of an inch, and masses in pounds; else they are told as closely as a tape is read: to a millimetre below
+    10 cm, to half a centimetre below 1 m, and to a centimetre beyond.  The checks of a measure keep newtons.
 
     Parameters
     ----------
@@ -241,8 +245,10 @@ def by_hand(units: Units) -> Write:
         if value is None or not isfinite(value):
             return units.text(value, unit)
         up = name in AT_LEAST
-        if unit == "m" and pounds:
-            return inches(value, up=up)
+        if unit == "m":
+            return inches(value, up=up) if pounds else units.text(by_tape(value, up=up), unit)
+        if name in _UNWEIGHED:
+            return f"{significant(value / mass, 2)}{_THIN}{unit_of_mass}"
         if unit == "kg" and pounds:
             return f"{_weight(value / mass, up=up)}{_THIN}{unit_of_mass}"
         if unit == "N" and not pounds and 0.0 < value < G:
@@ -257,6 +263,27 @@ def by_hand(units: Units) -> Write:
         return units.text(value, unit)
 
     return write
+
+
+_TAPE = ((0.01, 0.0), (0.1, 1e-3), (1.0, 5e-3), (inf, 1e-2))
+"""Lengths [m] below which a tape is read to so much [m]; threads and wires are not measured by one."""
+
+
+def by_tape(metres: float, *, up: bool) -> float:
+    """Return a length as closely as a tape is read [m].
+
+    Parameters
+    ----------
+    metres : float
+        In m.
+    up : bool
+        Whether to take the next mark above and not the nearest one.
+    """
+    step = next(step for most, step in _TAPE if abs(metres) < most)
+    if not step:
+        return metres
+    # What is above a mark by less than a hundredth of a step is at it.
+    return (ceil(metres / step - 0.01) if up else round(metres / step)) * step
 
 
 def inches(metres: float, *, up: bool) -> str:

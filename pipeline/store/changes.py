@@ -172,6 +172,18 @@ class _Comparison:
                 found[number] = tuple(told)
         return found
 
+    def _housed(self) -> frozenset[str] | None:
+        """Return the objects that differ and rest on a house rule in either run; None where a run does not say."""
+        rules = [run["settings"].get(HOUSE_RULES) for run in (self.before, self.after)]
+        if None in rules:
+            return None
+        sides = list(zip(self._differing_scenes, rules, strict=True))
+        return frozenset(
+            number
+            for number in self._differing_scenes[1]
+            if any(rests_on(scenes[number], rule["words"], rule["source"]) for scenes, some in sides for rule in some)
+        )
+
     @cached_property
     def inputs(self) -> tuple[InputChange, ...]:
         was, now = self._differing_scenes
@@ -241,7 +253,7 @@ class _Comparison:
 
     @cached_property
     def causes(self) -> Causes:
-        return Causes(self.inputs, self.decisions, self.motions, self.settings, self.versions)
+        return Causes(self.inputs, self.decisions, self.motions, self.settings, self.versions, self._housed())
 
     def _news(self) -> tuple[tuple[ObjectChange, ...], dict[str, int]]:
         sides = []

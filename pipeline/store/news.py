@@ -1,7 +1,7 @@
 """News of objects from one run to another, one by one; what changed for all at once only as a number; and why."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from typing import NamedTuple
 
 from pipeline.records import (
@@ -17,6 +17,7 @@ from pipeline.records import (
     Ruled,
     Settled,
 )
+from pipeline.store.sound import HOUSE
 
 MotionKey = tuple[str, str, str]
 """Level, floor and name of a motion."""
@@ -30,7 +31,8 @@ _INERT = frozenset({"problems", "position_x_m", "position_y_m", "value", "on_loa
 class Causes:
     """All that changed from one run to another, ready to be asked about one verdict.
 
-    Two causes that coincide are both named: the runs cannot tell which of them moved the verdict.
+    Two causes that coincide are both named: the runs cannot tell which of them moved the verdict.  Where it is known
+    which objects rest on house rules (``housed``), these are no cause for any other.
     """
 
     def __init__(
@@ -40,6 +42,7 @@ class Causes:
         motions: tuple[Mapping[MotionKey, tuple[str, ...]], Mapping[MotionKey, tuple[str, ...]]],
         settings: Iterable[FieldChange],
         versions: Iterable[FieldChange],
+        housed: Set[str] | None = None,
     ) -> None:
         self._inputs = {change.object_number: change for change in inputs}
         self._decisions: dict[str, list[DecisionChange]] = {}
@@ -49,7 +52,8 @@ class Causes:
                 self._decisions.setdefault(change.decision.object_number, []).append(change)
         self._motions = motions
         settings, versions = list(settings), list(versions)
-        self._settings = [Cause(CauseKind.SETTINGS, _said(change)) for change in settings]
+        self._settings = [(change.name, Cause(CauseKind.SETTINGS, _said(change))) for change in settings]
+        self._housed = housed
         self._versions = [Cause(CauseKind.VERSION, _said(change)) for change in versions]
         self._shaken: dict[tuple[str, str, str], tuple[Cause, ...]] = {}
 
@@ -62,7 +66,9 @@ class Causes:
         ]
         if floor_before != floor_after:
             found.append(Cause(CauseKind.FLOOR, f"{floor_before or GROUND} -> {floor_after or GROUND}"))
-        return (*found, *self._shaking(level, floor_before, floor_after), *self._settings, *self._versions)
+        found += self._shaking(level, floor_before, floor_after)
+        housed = self._housed is None or object_number in self._housed
+        return (*found, *(cause for name, cause in self._settings if housed or name != HOUSE), *self._versions)
 
     def fields(self, object_number: str) -> tuple[str, ...]:
         """Return the fields of an object's record that changed and that something computed may rest on."""

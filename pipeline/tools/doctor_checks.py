@@ -23,6 +23,7 @@ from pipeline.operations.workspace import LOCK, LockedError, Workspace, locked, 
 from pipeline.quantities import counted
 from pipeline.records import Item, Progress
 from pipeline.report.files.manifest import verify_report
+from pipeline.report.files.sheet_fonts import fonts_here
 from pipeline.settings import Settings
 from pipeline.store import migrate
 from pipeline.store.decisions import decisions_in_force
@@ -66,6 +67,8 @@ def looks(settings: Settings, workspace: Workspace | None) -> Iterator[Look]:
     yield "retention", lambda: _retention(settings)
     yield "hooks", lambda: _hooks(settings)
     yield "log", lambda: _log(settings)
+    if settings.report.language[:2] in ("ja", "ko", "zh"):
+        yield "fonts", _fonts
     if workspace is not None:
         yield "clock", lambda: _clock(workspace)
 
@@ -107,6 +110,16 @@ def _permissions(settings: Settings) -> Found:
     if os.name == "posix" and file.is_file() and file.stat().st_mode & 0o002:
         return "warning", f"everybody may change {file}, and with it the programs that hooks start: chmod o-w"
     return "ok", "reports, database, log and what is kept between nights can be written"
+
+
+def _fonts() -> tuple[str, str]:
+    here = fonts_here()
+    if here:
+        return "ok", f"{here[0].name} goes into the sheets to walk with"
+    return "warning", (
+        "this machine has no font of this script that may go into the sheets to walk with: a reader without one of its "
+        "own shows empty cells; install one, such as Debian's fonts-ipafont-gothic, fonts-nanum or fonts-wqy-microhei"
+    )
 
 
 def _kernels() -> Found:

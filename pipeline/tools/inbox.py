@@ -23,6 +23,9 @@ ENDINGS = (".xlsx", ".csv", *OTHER_BOOKS)
 SETTLING = 60.0
 """Seconds in which a file that cannot be read may still be on its way into the folder."""
 
+OPEN = 86_400.0
+"""Seconds for which the lock beside a workbook says that somebody has it open; an older one was left by a crash."""
+
 _LONGEST = 4_000
 
 
@@ -94,7 +97,20 @@ def _waiting(inbox: Path) -> list[Path]:
     return sorted(found, key=lambda file: (file.stat().st_mtime_ns, file.name))
 
 
+def _opened(file: Path) -> bool:
+    """Say whether a spreadsheet program has a file open: Excel and LibreOffice each put a lock beside it."""
+    for lock in (file.with_name(f"~${file.name}"), file.with_name(f".~lock.{file.name}#")):
+        try:
+            if datetime.now().timestamp() - lock.stat().st_mtime < OPEN:
+                return True
+        except OSError:
+            continue
+    return False
+
+
 def _one(settings: Settings, config: Path, file: Path, *, dry_run: bool) -> InboxFile:
+    if _opened(file):
+        return _told(file.name, "is left there until the next night: somebody has it open", ok=False)
     try:
         with rehearsed(settings, dry_run) as lent, locked(lent):
             taken = take_sheet(open_workspace(lent), config, file, dry_run=dry_run, beside=file.parent / REFUSED)

@@ -13,8 +13,8 @@ from pipeline.report.files.sheet_cells import HEADER_ROW
 
 NUMBER = "object_number"
 
-OTHER_BOOKS = (".ods", ".xls", ".xlsm", ".xlsb", ".numbers")
-"""Files of spreadsheet programs in which no sheet comes back."""
+OTHER_BOOKS = (".ods", ".xls", ".xlsm", ".xlsb", ".numbers", ".zip")
+"""Files of spreadsheet programs in which no sheet comes back, and what is packed to be mailed."""
 
 _OF_NAME = re.compile(r"(?P<what>.+?) ?\[(?P<unit>[^\[\]]*)\]")
 """The name of a column with its unit: height [cm]."""

@@ -167,9 +167,9 @@ def read_sheet(path: Path) -> Reading:
         lost = sheet_heads(path).lost
         return read_items(path, sheet_mapping(length, old_mass=_in_kilograms(path, length), without=lost))
     if path.suffix.lower() in OTHER_BOOKS:
-        raise CollectionError(
-            f"{path.name}: a sheet comes back as .xlsx or .csv; save it as an .xlsx workbook where it was filled in"
-        )
+        packed = path.suffix.lower() == ".zip"
+        remedy = "take the workbook out of it" if packed else "save it as an .xlsx workbook where it was filled in"
+        raise CollectionError(f"{path.name}: a sheet comes back as .xlsx or .csv; {remedy}")
     if path.suffix.lower() == ".xlsx":
         there = ", ".join(map(repr, visible_sheets(path)))
         raise CollectionError(

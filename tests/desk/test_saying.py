@@ -352,3 +352,14 @@ def test_hostile_numbers_and_titles_stay_text(visitor: Visitor, museum: Path) ->
     visitor.follow(visitor.said_of(HOSTILE, "/object/decide", kind="accept", why="<script>alert(2)</script>"))
     (made,) = read_decisions(engine_of(museum))
     assert made.object_number == HOSTILE
+
+
+def test_an_object_says_that_a_measure_decided_today_is_computed_with_tonight(museum: Path, visitor: Visitor) -> None:
+    told = "to be computed again tonight"
+    assert told not in visitor.object("1.2").text
+    # A risk that is accepted changes nothing that is computed.
+    assert told not in visitor.follow(visitor.said_of("1.2", "/object/decide", kind="accept", why="w")).text
+    done = visitor.said_of("1.2", "/object/decide", kind="class", why="w", **{"class": "cabinet"})
+    assert told in visitor.follow(done).text
+    night(load_settings(museum / "kouros.toml"))
+    assert told not in Visitor(visitor.address).object("1.2").text

@@ -17,7 +17,7 @@ from pipeline.analysis.response import respond
 from pipeline.analysis.survey import measurement_requests
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
-from pipeline.mitigate import changed
+from pipeline.mitigate import advise, changed
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures.brace import AT_TWO, BELOW, LEVER, STIFFER, STIFFER_AT_TWO, TOP
 from pipeline.mitigate.saying import HEAVIEST, UNWEIGHED
@@ -79,7 +79,7 @@ def test_whoever_builds_for_a_mass_that_is_assumed_is_told_what_it_may_be(motion
     times, likely, weight, most, heaviest = map(
         float,
         re.findall(r"must hold ([\d.]+) times its weight.* That is (\d+)\skg if it weighs (\d+)\skg, as is likeliest, "
-                   r"and (\d+)\skg if (\d+)\skg, the most", told)[0],
+                   r"and (\d+)\skg if it weighs (\d+)\skg, the most", told)[0],
     )  # fmt: skip
     assert (likely / weight, most / heaviest) == pytest.approx((times, times), rel=0.1)
     assert most / likely == pytest.approx(mass.high / mass.value, rel=0.1)
@@ -226,6 +226,21 @@ def test_a_brace_is_the_right_answer(motion: Motion) -> None:
     # Nobody braces what is lower than a hand.
     small = {name: 0.1 * getattr(weak, name) for name in ("height_m", "base_width_m", "base_depth_m", "cg_height_m")}
     assert "brace" not in {r.measure for r in sum(solve_all([replace(weak, **small)], [motion]), [])}  # noqa: RUF017
+
+
+def test_what_is_braced_is_not_braced_again(motion: Motion) -> None:
+    """A section that bears less than the least that a brace leaves, and more than a second one seemed to."""
+    push = float(np.hypot(*motion.acceleration[:2]).max())
+    bending, weight = 20.0 * push * 0.5 / (0.1**3 / 6.0), 20.0 * G / 0.01
+    item = replace(TOWER, object_name="Statue", allowable_stress_pa=0.1 * bending - weight)
+    scene = own_catalogue().named("brace").change(classify(item), {})
+    levels = [LevelMotions("design", "max", (motion,))]
+    _, findings = assess([scene], levels, Context(Threads(1)))
+    ((advice,),) = advise([scene], findings, levels, Context(Threads(1)))
+    assert advice.measure not in ("brace", "armature")
+    assert {f"{title}: it is braced already" for title in ("Brace it above its middle", "Brace it at two heights")} <= {
+        text for text in advice.rejected if "braced already" in text
+    }
 
 
 def test_a_brace_leaves_a_quarter_of_the_bending_of_an_even_bar() -> None:

@@ -295,7 +295,7 @@ def test_what_stands_there_and_what_was_made_of_it(tmp_path: Path) -> None:
     mapping.write_text(mapping.read_text(encoding="utf-8") + more, encoding="utf-8")
     summary, index = night(settings)
     assert "1 settled by choice" in "\n".join(summary_lines(summary))
-    assert "Settled by choice: 1 object taken not to be on display" in words(index)
+    assert "Settled by choice: 1 object is taken not to be on display" in words(index)
     assert "5 rows, 1 refused, 3 doubtful, 1 settled by choice: look" in words(index)
     found = {(r["what"], r["object_number"], r["field"]): (r["characters"], r["used"]) for r in table(index)}
     assert found == {

@@ -173,7 +173,8 @@ def test_the_same_plan_is_the_same_bytes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "said"), [(0.0, "0"), (0.15, "0.15"), (9.5, "9.5"), (39.96, "40"), (2130.4, "2,130")]
+    ("value", "said"),
+    [(0.0, "0"), (0.15, "0.15"), (9.5, "9.5"), (39.96, "40"), (2130.4, "2,100"), (139_352.0, "140,000"), (99.6, "100")],
 )
 def test_amounts_are_written_with_the_digits_that_they_have(value: float, said: str) -> None:
     assert number(value) == said

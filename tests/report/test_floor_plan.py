@@ -102,9 +102,9 @@ def test_the_table_says_what_the_drawing_says() -> None:
     assert view.missing == 1
     amphora = next(p for p in view.places if p.object.number == "70.AA.2")
     assert amphora.position == "110\u202fcm east, 300\u202fcm north"
-    assert (amphora.footprint, amphora.clearance) == ("50 × 40\u202fcm", "13.1\u202fcm")
+    assert (amphora.footprint, amphora.clearance) == ("50 × 40\u202fcm", "13.5\u202fcm")
     inches = next(p for p in plan(Units("in")).places if p.object.number == "70.AA.2")
-    assert inches.footprint == "19.7 × 15.7\u202fin"
+    assert inches.footprint == "19\u00a0⅝ × 15\u00a0¾\u00a0in"
 
 
 def test_without_a_position_there_is_no_plan() -> None:

@@ -93,7 +93,7 @@ def phrases(*further: str) -> Iterator[tuple[str, tuple[str, ...]]]:
     with (root / "templates" / "babel.cfg").open(encoding="utf-8") as file:
         methods, options = parse_mapping_cfg(file)
     folders = {"templates", "pipeline", "report", "pages", "plots", "files", "tables", "models", "mitigate", "measures"}
-    folders |= {*further}
+    folders |= {"analysis", "fragility", *further}
     for found in extract_from_dir(root, methods, options, directory_filter=lambda at: Path(at).name in folders):
         message = found[2]
         yield (message, ()) if isinstance(message, str) else (message[0], tuple(message[1:]))

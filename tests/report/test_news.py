@@ -55,6 +55,15 @@ def test_the_words_that_a_curator_reads() -> None:
     assert news_line(accepted).sentence == "Decided: 1 t: risk accepted, by A.B."
 
 
+def test_a_measure_that_is_in_place_and_not_enough_is_said_to_be() -> None:
+    surer = replace(ACT, band="almost certain")
+    for measure, told in (("fasten", "that is not enough: fasten it"), ("clamps", "fasten it")):
+        made = Settled(True, measure, "", "Ann")
+        one = ObjectChange("1", "t", "g", surer, ACT, decided=(made,))
+        assert one.kind is NewsKind.STILL
+        assert news_line(one).text.endswith(f"harm was almost certain, and is likely: {told}")
+
+
 @pytest.mark.parametrize(
     ("more", "said"),
     [
@@ -131,7 +140,7 @@ def test_a_thousand_pieces_of_news_are_on_pages(tmp_path: Path) -> None:
     page = index.read_text(encoding="utf-8")
     assert page.count('<li class="danger">') == 8
     assert f"All {many:,} objects with news" in page
-    assert sentences(changes(*objects), 5)[-1] == f"And {many - 5:,} objects more."
+    assert sentences(changes(*objects), 5)[-1] == f"And {many - 5:,} more objects."
 
 
 def test_what_is_the_same_of_many_is_said_once_and_what_is_acted_on_one_by_one() -> None:

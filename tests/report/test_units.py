@@ -5,7 +5,7 @@ from math import inf, nan, pi
 import pytest
 
 from pipeline.report import ReportError, Units
-from pipeline.report.units import ratio
+from pipeline.report.units import by_hand, ratio
 
 
 @pytest.mark.parametrize(
@@ -30,6 +30,24 @@ from pipeline.report.units import ratio
 )
 def test_numbers_in_the_readers_units(value: float | None, unit: str, text: str) -> None:
     assert Units().text(value, unit) == text
+
+
+@pytest.mark.parametrize(
+    ("metres", "up", "text"),
+    [
+        (0.0004, False, "0.04\u202fcm"),
+        (0.0151, False, "1.5\u202fcm"),
+        (0.336, False, "33.5\u202fcm"),
+        (0.3351, True, "34\u202fcm"),
+        (0.33503, True, "33.5\u202fcm"),
+        (0.712, False, "71\u202fcm"),
+        (1.424, False, "142\u202fcm"),
+        (1.421, True, "143\u202fcm"),
+    ],
+)
+def test_lengths_are_told_as_a_tape_is_read(metres: float, up: bool, text: str) -> None:
+    """To a millimetre below 10 cm, half a centimetre below 1 m, a centimetre beyond; never less than was asked for."""
+    assert by_hand(Units())("clearance" if up else "height", metres, "m") == text
 
 
 def test_inches() -> None:

@@ -7,12 +7,15 @@ from pathlib import Path
 from unicodedata import normalize
 
 import pytest
+from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.ttGlyphPen import TTGlyphPen
 from pypdf import PdfReader
 
 from pipeline.mitigate.saying import ANCHORED, ENGINEER, HEAVIEST
-from pipeline.quantities import G
+from pipeline.quantities import G, sorting_key
 from pipeline.records import Recommendation
 from pipeline.report import render
+from pipeline.report.files import sheet_fonts
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.walk_sheet import LACKING, PAPERS, sheet_file, sheet_pdf
 from pipeline.report.language import Language
@@ -79,9 +82,12 @@ def test_each_object_to_act_on_is_on_its_gallerys_sheet_once_and_in_the_order_of
         others = {o.number for o in gallery.objects if o.settled or o.state is not State.ACT} - measured
         assert not others & set(lines)
         told = "\n".join(words_of(sheet, report))
-        places = [
-            told.index(o.number) for t in gallery.tasks for o in t.objects if o in wanted and o.measures[1:] == ()
+        # What is done alike goes case by case, what is in none last.
+        on_the_way = [
+            sorted(t.objects, key=lambda o: (not o.place, sorting_key(o.place), sorting_key(o.number)))
+            for t in gallery.tasks
         ]
+        places = [told.index(o.number) for some in on_the_way for o in some if o in wanted and o.measures[1:] == ()]
         assert places == sorted(places)
         several += len(wanted) > 1
     assert several
@@ -174,6 +180,43 @@ def test_titles_in_other_scripts_are_shown_or_said_to_be_lacking(tmp_path: Path)
     told = "\n".join(words_of(drawn([WalkRow("\U00012000-77", "\U00012000", "")]), tmp_path))
     assert f"{LACKING}-77" in told
     assert "stands for letters that the fonts of this sheet lack" in told
+
+
+def test_a_font_of_the_machine_goes_into_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A font with one letter of its own, such as none that PDF names has, where people keep their fonts."""
+    letter = "\ue0d7"
+    fonts = tmp_path / ".local" / "share" / "fonts" / "truetype"
+    fonts.mkdir(parents=True)
+    pen = TTGlyphPen(None)
+    for at, corner in enumerate(((0, 0), (0, 900), (900, 900), (900, 0))):
+        (pen.lineTo if at else pen.moveTo)(corner)
+    pen.closePath()
+    glyph = pen.glyph()
+    made = FontBuilder(1000)
+    made.setupGlyphOrder([".notdef", "own"])
+    made.setupCharacterMap({ord(letter): "own"})
+    made.setupGlyf({".notdef": glyph, "own": glyph})
+    made.setupHorizontalMetrics({".notdef": (1000, 0), "own": (1000, 0)})
+    made.setupHorizontalHeader(ascent=900, descent=-100)
+    made.setupNameTable({"familyName": "Own", "styleName": "Regular", "psName": "Own"})
+    made.setupOS2()
+    made.setupPost()
+    made.save(fonts / "ipag.ttf")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    caches = (sheet_fonts._found_here, sheet_fonts._letters_in, sheet_fonts._named)
+    try:
+        for one in caches:
+            one.cache_clear()
+        pdf = drawn([WalkRow("1", letter * 3, "")])
+        assert fonts / "ipag.ttf" in sheet_fonts.fonts_here()
+        assert LACKING not in "\n".join(words_of(pdf, tmp_path))
+        (page,) = PdfReader(tmp_path / "one.pdf").pages
+        held = [font.get_object() for font in page["/Resources"]["/Font"].values()]  # type: ignore[index]
+        (own,) = [font for font in held if "Own" in font["/BaseFont"]]
+        assert "/FontFile2" in own["/FontDescriptor"]
+    finally:
+        for one in caches:
+            one.cache_clear()
 
 
 def test_what_to_do_has_few_words() -> None:

@@ -18,6 +18,7 @@ from pipeline.records import (
     Brief,
     Cause,
     CauseKind,
+    FieldChange,
     InputChange,
     MotionChange,
     Move,
@@ -32,6 +33,7 @@ from pipeline.records import (
 )
 from pipeline.store.codec import StoreError
 from pipeline.store.migrate import upgrade
+from pipeline.store.news import Causes
 from pipeline.store.results import DamagedRunError
 from pipeline.store.runs import changes_since, compare_runs
 from pipeline.store.tables import PAGE, RESULT, RUN
@@ -179,6 +181,17 @@ def test_changes_equal_a_plain_comparison(
     }
     assert {(c.object_number, c.model, c.level, c.before, c.after) for c in found.verdicts} == expected
     assert len(found.verdicts) == len(expected)
+
+
+def test_house_rules_are_a_cause_only_for_what_rests_on_one() -> None:
+    settings = [FieldChange("house", "a", "b"), FieldChange("analysis.tilt", 1, 2)]
+
+    def told(number: str, housed: frozenset[str] | None) -> list[str]:
+        found = Causes([], [], ({}, {}), settings, [], housed).of(number, "design", "", "")
+        return [cause.what.partition(":")[0] for cause in found]
+
+    assert told("1", frozenset("1")) == told("2", None) == ["house", "analysis.tilt"]
+    assert told("2", frozenset("1")) == ["analysis.tilt"]
 
 
 def test_of_a_run_of_an_earlier_version_nothing_is_made_up(sqlite: Engine) -> None:

@@ -16,7 +16,7 @@ from pipeline.records import DecisionKind
 from pipeline.report.files.survey_sheet import DECISIONS_SHEET
 from pipeline.settings import load_settings
 from pipeline.store.decisions import read_decisions
-from pipeline.tools.inbox import InboxFile, take_inbox
+from pipeline.tools.inbox import OPEN, InboxFile, take_inbox
 from tests.museum import edit, kouros
 
 from .surveyed import OBJECTS, fill, inventory, write_rows
@@ -175,12 +175,16 @@ def test_what_is_no_survey_is_refused_with_its_reason_and_ends_nothing(museum: P
     (inbox / "link.xlsx").symlink_to(museum / "s.xlsx")
     (inbox / "nowhere.xlsx").symlink_to(museum / "nowhere")
     os.mkfifo(inbox / "pipe.xlsx")
+    (inbox / "mailed.zip").write_bytes(content)
     for file in inbox.iterdir():
         if file.is_file() and not file.is_symlink():
             aged(file)
+    # A lock that old was left by a crash.
+    aged(inbox / "~$good.xlsx", 2.0 * OPEN)
     took = look(museum)
+    assert took["mailed.zip"].words.endswith("take the workbook out of it")
     bad = {"half.xlsx", "empty.xlsx", "text.xlsx", "other.csv", "blank.xlsx", "line?break.xlsx", "n" * 240 + ".xlsx"}
-    bad.add("libre.ods")
+    bad |= {"libre.ods", "mailed.zip"}
     assert {name for name, one in took.items() if not one.ok} == bad
     assert {name for name, one in took.items() if one.ok} == {"good.xlsx"}
     assert inventory(museum)[OBJECTS[0]].height_m == 0.3
@@ -209,6 +213,18 @@ def test_a_file_that_is_still_on_its_way_waits(museum: Path, inbox: Path) -> Non
     assert "is left there until the next night, as it is new" in look(museum)["t.xlsx"].words
     assert [one.name for one in inbox.iterdir()] == ["t.xlsx"]
     (inbox / "t.xlsx").write_bytes(content)
+    assert look(museum)["t.xlsx"].ok
+
+
+@pytest.mark.parametrize("lock", ["~$t.xlsx", ".~lock.t.xlsx#"])
+def test_a_workbook_that_somebody_has_open_waits(museum: Path, inbox: Path, lock: str) -> None:
+    """Excel and LibreOffice put a lock beside it, which goes when it is closed."""
+    fill(museum / "s.xlsx", {(OBJECTS[0], "height [cm]"): "30"}, into=inbox / "t.xlsx")
+    aged(inbox / "t.xlsx")
+    (inbox / lock).write_bytes(b"Ann")
+    assert look(museum)["t.xlsx"].words == "is left there until the next night: somebody has it open"
+    assert sorted(one.name for one in inbox.iterdir()) == sorted(["t.xlsx", lock])
+    (inbox / lock).unlink()
     assert look(museum)["t.xlsx"].ok
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.errors import InputError
+from pipeline.models.common import N_
 from pipeline.quantities import Array
 from pipeline.records.fragility import HazardCurve, Measure
 
@@ -79,9 +80,11 @@ class Hazard:
         order = np.argsort(periods, kind="stable")
         x, years = np.asarray(intensities, dtype=float)[order], np.asarray(periods, dtype=float)[order]
         if np.unique(years).size < 2:
-            raise NoHazardError("how often it happens needs return periods of two levels or more")
+            raise NoHazardError(N_("how often it happens needs return periods of two levels or more"))
         if not (np.all(np.isfinite(x)) and x[0] > 0.0 and np.all(np.diff(x) > 0.0) and np.all(np.diff(years) > 0.0)):
-            raise NoHazardError("how often it happens cannot be told: a rarer level must shake more than a common one")
+            raise NoHazardError(
+                N_("how often it happens cannot be told: a rarer level must shake more than a common one")
+            )
         logs, rates = np.log(x), -np.log(years)
         first = rates[0] - (rates[1] - rates[0]) / (logs[1] - logs[0]) * np.log(extended)
         last = rates[-1] + (rates[-1] - rates[-2]) / (logs[-1] - logs[-2]) * np.log(extended)

@@ -15,6 +15,7 @@ from pipeline.analysis.furnished import best_furnished
 from pipeline.analysis.furniture import FurnitureFilter
 from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.verdicts import capacity_of
+from pipeline.models.common import N_
 from pipeline.quantities import Array
 from pipeline.records import Fragility, Motion, Numerics, Scene
 from pipeline.records.fragility import ABOVE, FLAT, HazardCurve, Measure
@@ -103,7 +104,7 @@ def hazard_of(stripes: Sequence[Stripe], measure: Measure = "pga") -> Hazard:
     told = [s for s in stripes if s.return_period_years is not None and s.motions]
     each = [s.intensities if measure == "pga" else s.velocities for s in told]
     if not all(each):
-        raise NoHazardError("how often it happens cannot be told by a peak velocity that nobody gave")
+        raise NoHazardError(N_("how often it happens cannot be told by a peak velocity that nobody gave"))
     with np.errstate(divide="ignore"):
         means = [float(np.exp(np.mean(np.log(values)))) for values in each]
     return Hazard.of(means, [s.return_period_years or 0.0 for s in told], measure=measure)

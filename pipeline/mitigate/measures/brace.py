@@ -54,6 +54,9 @@ STIFFER, STIFFER_AT_TWO = (2.0, 3.0, 4.39), (3.0, 5.0, 12.0)
 ABOVE, BELOW, TOP = 1.2, 0.8, 1.6
 """Heights of the brace, and of the lower and the upper of two, over that of the centre of gravity."""
 
+_BRACED = "with the brace"
+"""Ends the note of what a brace changed: the factors are over what bends without any."""
+
 
 class Brace(Measure):
     """Brace it from behind at or above its middle, and hold its base: it neither rocks nor slides, and bends less."""
@@ -83,6 +86,8 @@ class Brace(Measure):
             return NOT_FREE
         if self.row.classes and scene.object_class not in self.row.classes:
             return refused(N_("objects of its kind cannot be braced so"))
+        if "lever" in scene.parameters and _BRACED in scene.parameters["lever"].note:
+            return refused(N_("it is braced already"))
         if not knows_section(scene) or "cg_height" not in scene.parameters:
             return UNKNOWN_SECTION
         # Twice the height of the centre of gravity, where the height itself is not recorded.
@@ -106,4 +111,4 @@ class Armature(Brace):
 
 
 def _braced(estimate: Estimate, factors: tuple[float, float, float]) -> Estimate:
-    return multiplied(estimate, *factors, f"{estimate.note}, with the brace" if estimate.note else "")
+    return multiplied(estimate, *factors, ", ".join(filter(None, (estimate.note, _BRACED))))

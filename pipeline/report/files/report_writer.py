@@ -44,7 +44,7 @@ from pipeline.report.pages.compose import anchor_of, museum_view, page_head, pag
 from pipeline.report.pages.environment import environment, fill, script_of
 from pipeline.report.pages.errand_views import plan_page
 from pipeline.report.pages.further import further_pages
-from pipeline.report.pages.news import news_pages, news_view, page_file
+from pipeline.report.pages.news import news_pages, news_view, page_file, together
 from pipeline.report.pages.reading import (
     IMAGES,
     INVENTORY,
@@ -366,7 +366,7 @@ class ReportWriter:
             return [
                 ("index.html", fill(env, "index.html", told | {"here": "index", "left_out": left_out})),
                 *(
-                    (file, fill(env, "news.html", told | {"here": "news", "lines": lines, "number": number}))
+                    (file, fill(env, "news.html", told | {"here": "news", "groups": together(lines), "number": number}))
                     for number, (file, lines) in enumerate(zip(told["files"], listed, strict=True), 1)
                 ),
                 ("method.html", fill(env, "method.html", shared | measured | {"here": "method"})),

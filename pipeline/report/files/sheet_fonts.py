@@ -1,8 +1,9 @@
 """The letters of the sheets to walk with: which font has each, how wide a text is, and how it is drawn.
 
 Latin, Greek, Cyrillic, Arabic and Hebrew are set in DejaVu Sans, which comes with matplotlib and goes into the file.
-Chinese, Japanese and Korean are set in fonts that PDF only names (ISO 32000-1, 9.7.5.2): a reader shows its own font of
-that script, which a machine on which these languages are read has.  A letter that none has is a box.
+Chinese, Japanese and Korean are set in a font of this machine that may go into the file, where it has one with all the
+letters (`_OF_MACHINES`); else in one that PDF only names (ISO 32000-1, 9.7.5.2): a reader shows its own font of that
+script, and one that has none shows nothing.  A letter that none has is a box.
 """
 
 import re
@@ -28,6 +29,16 @@ _NAMED = {
     "MSung-Light": "big5",
 }
 """Fonts that are named only, and the letters that each has."""
+
+_OF_MACHINES = (
+    "ipaexg.ttf", "ipagp.ttf", "ipag.ttf", "TakaoPGothic.ttf", "VL-PGothic-Regular.ttf", "YuGothM.ttc", "meiryo.ttc",
+    "msgothic.ttc", "NanumGothic.ttf", "malgun.ttf", "wqy-microhei.ttc", "wqy-zenhei.ttc", "msyh.ttc", "simhei.ttf",
+    "DroidSansFallbackFull.ttf", "arialuni.ttf", "Arial Unicode.ttf",
+)  # fmt: skip
+"""Fonts with TrueType outlines, which go into a file, as Debian, Windows and macOS name them: Japanese ones first."""
+
+_FOLDERS = ("/usr/share/fonts", "/usr/local/share/fonts", "/Library/Fonts", "/System/Library/Fonts", "C:/Windows/Fonts")
+_AT_HOME = (".local/share/fonts", ".fonts", "Library/Fonts", "AppData/Local/Microsoft/Windows/Fonts")
 
 _ARABIC = re.compile("[\u0600-\u06ff\u0750-\u077f]")
 _TURNED = re.compile("[\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufeff]")
@@ -65,10 +76,39 @@ def ready() -> frozenset[int]:
     return letters or frozenset()
 
 
+def fonts_here() -> list[Path]:
+    """Return the fonts of Chinese, Japanese and Korean that this machine has and that may go into a file."""
+    folders = [*map(Path, _FOLDERS), *(Path.home() / name for name in _AT_HOME)]
+    there = {file.name.lower(): file for folder in folders for file in sorted(folder.rglob("*.tt[cf]"))}
+    return [there[name.lower()] for name in _OF_MACHINES if name.lower() in there]
+
+
+_found_here = cache(fonts_here)
+
+
+@cache
+def _letters_in(file: Path) -> frozenset[str]:
+    """Register a font, and return its letters; none where it cannot go into a file."""
+    from reportlab.pdfbase.pdfmetrics import registerFont
+    from reportlab.pdfbase.ttfonts import TTFError, TTFont
+
+    try:
+        font: Any = TTFont(file.stem, str(file), asciiReadable=False, shapable=False)
+    except (TTFError, OSError):
+        return frozenset()
+    registerFont(font)
+    return frozenset(map(chr, font.face.charToGlyph))
+
+
 @lru_cache(maxsize=8192)
 def _named(letters: str) -> str:
-    """Return the first of the named fonts that has all of the letters; "" where none has."""
-    for name, held in _NAMED.items() if letters >= "\u1100" else ():
+    """Return the first font that has all of the letters, of this machine's or else a named one; "" where none has."""
+    if letters < "\u1100":
+        return ""
+    for file in _found_here():
+        if _letters_in(file).issuperset(letters):
+            return file.stem
+    for name, held in _NAMED.items():
         try:
             letters.encode(held)
         except UnicodeEncodeError:

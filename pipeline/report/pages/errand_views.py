@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import floor, log10
 
 from markupsafe import Markup
 
@@ -195,8 +196,13 @@ def title_of(errand: Errand) -> str:
 
 
 def number(value: float) -> str:
-    """Write hours or a cost: three digits where it is small, whole numbers from 100 on."""
-    return count(round(value)) if value >= 99.5 else significant(value, 3 if value >= 10.0 else 2)
+    """Write hours or a cost with two significant digits: they are judgement, with wide ranges."""
+    return count(round(round(value, 1 - floor(log10(value))))) if value >= 99.5 else significant(value, 2)
+
+
+def given(value: float) -> str:
+    """Write hours or a cost that somebody gave, as it is."""
+    return count(round(value)) if value >= 99.5 else significant(value, 3)
 
 
 def priced(amount: str, currency: str) -> str:
@@ -303,14 +309,14 @@ def _lede(plan: ErrandPlan) -> str:
         return phrase % {"count": count(len(plan.chosen)), "share": avoided}
     there = []
     if limits.hours is not None:
-        there.append(_("%(hours)s hours") % {"hours": number(limits.hours)})
+        there.append(_("%(hours)s hours") % {"hours": given(limits.hours)})
     there += [
-        _("%(hours)s hours of a %(trade)s") % {"hours": number(limits.trades[trade]), "trade": _TRADES[trade]()}
+        _("%(hours)s hours of a %(trade)s") % {"hours": given(limits.trades[trade]), "trade": _TRADES[trade]()}
         for trade in TRADES
         if trade in limits.trades
     ]
     if limits.cost is not None:
-        there.append(_("a cost of %(cost)s") % {"cost": priced(number(limits.cost), plan.terms.currency)})
+        there.append(_("a cost of %(cost)s") % {"cost": priced(given(limits.cost), plan.terms.currency)})
     told = _("With %(there)s you avoid %(share)s of what an earthquake of this level is expected to cost.")
     return told % {"there": _joined(there), "share": avoided}
 

@@ -16,7 +16,7 @@ from pipeline.report.plots import svg
 from pipeline.report.plots.panel import Panel, Scale, nice_step
 from pipeline.report.plots.svg import Element, Point
 from pipeline.report.text import count, plain, short
-from pipeline.report.units import Units
+from pipeline.report.units import Units, by_hand
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,14 +151,20 @@ def _place(number: int, assessment: Assessment, view: ObjectView) -> _Place:
 
 def _row(place: _Place, assessment: Assessment, units: Units) -> PlaceView:
     size = _footprint(assessment.scene.item)
-    across = _("%(x)s east, %(y)s north") % {"x": units.text(place.x, "m"), "y": units.text(place.y, "m")}
+    write = by_hand(units)
+    across = _("%(x)s east, %(y)s north") % {"x": write("x", place.x, "m"), "y": write("y", place.y, "m")}
     return PlaceView(
         place.number,
         place.view,
         across,
-        _("not recorded") if size is None else f"{units.number(size[0], 'm')} × {units.text(size[1], 'm')}",
-        units.text(place.need, "m") if place.need else "–",
+        _("not recorded") if size is None else _across(*(write("size", one, "m") for one in size)),
+        write("clearance", place.need, "m") if place.need else "–",
     )
+
+
+def _across(first: str, second: str) -> str:
+    """Return two lengths by each other, with one unit where it is a word behind both."""
+    return f"{first.removesuffix(second.rsplit(maxsplit=1)[-1]).rstrip()} × {second}"
 
 
 def _tight(spacings: Sequence[SpacingView]) -> list[SpacingView]:

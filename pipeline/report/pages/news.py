@@ -35,6 +35,7 @@ _ONE_BY_ONE = frozenset({NewsKind.DANGER, NewsKind.WORSE, NewsKind.LOST, NewsKin
 """News that somebody acts on."""
 
 _FIELDS = 3
+_SIZES = frozenset({"height_m", "width_m", "depth_m"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,7 +236,7 @@ def sentences(changes: RunChanges, most: int = OPEN) -> list[str]:
     more = len(changes.objects) - sum(len(group.lines) for group in shown)
     if more:
         told.append(
-            ngettext("And %(shown)s object more.", "And %(shown)s objects more.", more) % {"shown": count(more)}
+            ngettext("And %(shown)s more object.", "And %(shown)s more objects.", more) % {"shown": count(more)}
         )
     if changes.shared:
         told.append(shared_sentence(told_counts(changes.shared), because(shared_causes(changes))))
@@ -352,7 +353,10 @@ def _text(kind: NewsKind, one: ObjectChange) -> str:
         return f": {to_do(now)}"
     if kind is NewsKind.STILL:
         turned = _turned(one.before, now) if one.before and one.before.band != now.band else ""
-        return f"{bracket}: {f'{turned}: ' if turned else ''}{to_do(now)}"
+        told = to_do(now)
+        if now.measure in one.installed:
+            told = _("that is not enough: %(what)s") % {"what": told}
+        return f"{bracket}: {f'{turned}: ' if turned else ''}{told}"
     if kind is NewsKind.NEW:
         return f": {_stands(now)}{_missing(now)}"
     if kind is NewsKind.LOST:
@@ -427,7 +431,10 @@ def _why(one: ObjectChange) -> str:
     if not told and one.came_from is not None:
         told = [_moved(one).removeprefix(": ")]
     if not told and one.fields:
-        named = [words(clean(name)) for name in one.fields[:_FIELDS]] + ["…"] * (len(one.fields) > _FIELDS)
+        # The text that sizes were read from says no more than they do.
+        sized = any(name in _SIZES for name in one.fields)
+        changed = [words(clean(name)) for name in one.fields if not (sized and name == "dimensions")]
+        named = changed[:_FIELDS] + ["…"] * (len(changed) > _FIELDS)
         told = [_("its record changed: %(fields)s") % {"fields": ", ".join(named)}]
     if not one.installed:
         told += map(_rule, one.ruled)

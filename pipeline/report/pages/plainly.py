@@ -67,7 +67,10 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
         told.append(_("That is for the mean of the earthquakes: in the worst of them it moves %(worst)s.") % numbers)
     if HEAVIEST in advice.sentence:
         heaviest = (
-            _("That is %(likely)s if it weighs %(weight)s, as is likeliest, and %(most)s if %(heaviest)s, the most.")
+            _(
+                "That is %(likely)s if it weighs %(weight)s, as is likeliest, and %(most)s if it weighs %(heaviest)s, "
+                "the most."
+            )
             if of_weight
             else _("That is for %(heaviest)s, the most that it may weigh; %(weight)s is likelier.")
         ) % numbers

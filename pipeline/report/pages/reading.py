@@ -12,7 +12,7 @@ from typing import Any
 from pipeline.records import Doubt
 from pipeline.records.run import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
 from pipeline.report.assumed import assumed
-from pipeline.report.language import _, said
+from pipeline.report.language import _, ngettext, said
 from pipeline.report.text import clean, count, safe_cell, short, words
 from pipeline.report.units import Units
 
@@ -52,7 +52,7 @@ class ReadingView:
     known   : whether it was noted what reading refused and doubts
     unsaid  : objects taken to be on display because no column says what is; 0 where one does
     suspicions : what the whole source seems to have wrong, and what mends it
-    choices : what was settled for the whole source by choice, and what settles it otherwise
+    choices : what was settled for the whole source by choice
     images  : photographs that cannot be shown
     """
 
@@ -64,7 +64,7 @@ class ReadingView:
     sheets: int = 0
     suspicions: tuple[tuple[str, str], ...] = ()
     unsaid: int = 0
-    choices: tuple[tuple[str, str], ...] = ()
+    choices: tuple[str, ...] = ()
     images: int = 0
 
     @property
@@ -102,9 +102,28 @@ def reading_view(settings: Mapping[str, Any]) -> ReadingView:
         sheets=int(told["sheets"]),
         suspicions=tuple((clean(one["message"]), clean(one["remedy"])) for one in told["suspicions"]),
         unsaid=int(told["unsaid"]),
-        choices=tuple((clean(one["message"]), clean(one["remedy"])) for one in told.get("choices", ())),
+        choices=tuple(_settled(clean(one["message"])) for one in told.get("choices", ())),
         images=int(told.get("images", 0)),
     )
+
+
+_AWAY = re.compile(
+    r"(?P<number>[\d,]+) objects? taken not to be on display, as the name of the location says: (?P<places>.*)",
+    re.DOTALL,
+)
+
+
+def _settled(message: str) -> str:
+    """Say in the reader's language what was settled by choice; what settles it otherwise is on the import's page."""
+    found = _AWAY.fullmatch(message)
+    if found is None:
+        return message
+    number = int(found["number"].replace(",", ""))
+    return ngettext(
+        "%(shown)s object is taken not to be on display, as its place is called: %(places)s",
+        "%(shown)s objects are taken not to be on display, as their places are called: %(places)s",
+        number,
+    ) % {"shown": count(number), "places": found["places"]}
 
 
 @dataclass(frozen=True, slots=True)

@@ -176,7 +176,10 @@ def _fields(change: InputChange, units: Units) -> str:
 
 def _field(change: FieldChange, units: Units) -> str:
     name = change.name.removeprefix("parameters.").removeprefix("scene.")
-    return f"{words(name)} {_value(name, change.before, units)} → {_value(name, change.after, units)}"
+    before, after = (_value(name, value, units) for value in (change.before, change.after))
+    if before == after:
+        return _("%(what)s: another range or source") % {"what": f"{words(name)} {after}"}
+    return f"{words(name)} {before} → {after}"
 
 
 def _value(name: str, value: Any, units: Units) -> str:

@@ -107,7 +107,8 @@ def walk_view(
 ) -> WalkView:
     """Return the sheet of a page, in the order in which the page lists what to do first and what to measure first.
 
-    What people accepted or overruled is on no sheet.
+    What is done alike goes case by case, and then by number: whoever carries what it takes walks once.  What
+    people accepted or overruled is on no sheet.
 
     Parameters
     ----------
@@ -129,7 +130,7 @@ def walk_view(
     listed = [
         view.anchor
         for task in tasks
-        for view in task.objects
+        for view in sorted(task.objects, key=_on_the_way)
         if view.anchor in advice and _measure(advice[view.anchor]) == task.measure
     ]
     # Besides, so that none is lost: what fails at another level than that for which something is advised.
@@ -147,6 +148,10 @@ def walk_view(
     left = tuple(view.number for view in others if view.number not in unknown)
     newest = decided.newest([found.scene.item.object_number for found, _view in pairs])
     return WalkView(name, page, act, measure, left, unknown, newest)
+
+
+def _on_the_way(view: ObjectView) -> tuple[bool, str, str]:
+    return not view.place, sorting_key(view.place), sorting_key(view.number)
 
 
 def _advice(found: Assessment, decided: Decided) -> Recommendation | None:
@@ -224,6 +229,9 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
             if name == "size" and pieces:
                 # The sign of a diameter: 4 x 2 cm would be a strip as well.
                 told[-1] = f"{pieces} × Ø {text}"
+                continue
+            if name == "second" and "height" in advice.parameters:
+                told[-1] = _("%(parts)s and %(last)s") % {"parts": told[-1], "last": text}
                 continue
             pieces = text if name == "pieces" else pieces
             if name in ("weight", "heaviest") and of_weight:
