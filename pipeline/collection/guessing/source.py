@@ -15,8 +15,8 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, columns_of
 from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.headings import has_headings
+from pipeline.collection.guessing.json_lists import objects_in
 from pipeline.collection.guessing.long_rows import long_form_of
-from pipeline.collection.guessing.names import named
 from pipeline.collection.guessing.text_files import (
     LOOKED_AT,
     delimiter_of,
@@ -34,7 +34,6 @@ from pipeline.collection.opening import open_source
 from pipeline.collection.sources.files import head_of, unpacked, unreadable
 from pipeline.collection.sources.folders import Folder
 from pipeline.collection.sources.headings import HEADING, under_headings
-from pipeline.collection.sources.json_objects import at_path, is_keyed, list_in, table_of
 from pipeline.collection.sources.json_records import files_of as json_files
 from pipeline.collection.sources.json_records import read_values
 from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
@@ -48,11 +47,11 @@ from pipeline.collection.sources.xml_records import XML_FILES
 READ = 2000
 """Rows that the guess is made from."""
 
+SOME_VALUES = 20
+"""Values of a file of JSON from which it is told where it lists objects."""
+
 _HEADED = ("csv", "tsv", "fixed", "xlsx")
 """Formats of tables that people write, with headings between their rows perhaps."""
-
-MOST_NAMED = 0.2
-"""Share of the names before objects that may be those of fields (judgement)."""
 
 SNIFFED = 1 << 18
 """Bytes from which encoding and delimiter are told."""
@@ -189,20 +188,8 @@ def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
         return {"format": kind}
     file = json_files(path, deep=True)[0] if path.is_dir() else path
     with _unpacked(file) as binary:
-        found = [value for _, value in islice(read_values(binary, file.name, exact=True), 2)]
-    where = told.choices.get("records", list_in(found[0] if found else None, alone=len(found) < 2))
-    if where:
-        told.sure.append(f"objects are listed as {where!r}")
-    source: dict[str, Any] = {"format": "json"} | ({"records": where} if where else {})
-    held: dict[str, Any] = at_path(found[0], where) if len(found) == 1 else {}
-    # Names of fields are no numbers of objects: {"height": {"value": 12, "unit": "cm"}, "width": ...}.
-    if is_keyed(held) and sum(named(key) is not None for key in held) < MOST_NAMED * len(held):
-        told.sure.append(f"each object stands behind its number, such as {next(iter(held))[:80]!r}")
-        source["layout"] = "keyed"
-    elif table_of(held) is not None:
-        told.sure.append("the names of the columns and their cells stand in lists")
-        source["layout"] = "columns"
-    return source
+        found = [value for _, value in islice(read_values(binary, file.name, exact=True), SOME_VALUES)]
+    return {"format": "json"} | objects_in(found, told.choices.get("records"), told.sure)
 
 
 @contextmanager
