@@ -254,6 +254,14 @@ def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], tol
         raise CollectionError(
             "--choose header_row (and header_rows): needs a number, such as header_row=4"
         ) from problem
+    if row == 0:
+        source["header_row"] = 0
+        told.doubts.append(
+            "no row names the columns, for the first one is written as those below it: they are numbered, and their "
+            "cells tell what each is; --choose header_row=1 takes the first row for names"
+        )
+        told.questions.append(Question("header_row", "which row names the columns?", ("0", "1"), "0"))
+        return
     # A first row may come late only where blank lines stand above it, which are passed over anyway.
     if row != 1 and (row != rows[0][0] if rows else True):
         source["header_row"] = row

@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import islice
+from statistics import median
 from unicodedata import category
 
 from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
-from pipeline.collection.guessing.names import named
+from pipeline.collection.guessing.names import named, outright
 from pipeline.collection.sources.cards import LABELLED
 from pipeline.collection.sources.delimited import cut_at
 from pipeline.collection.sources.heads import is_of_units, joined_heads
@@ -272,7 +273,7 @@ class Head:
     Attributes
     ----------
     row : int
-        The first row (or line) of their names.
+        The first row (or line) of their names; 0 where the first row that says anything is an object.
     rows : int
         How many rows name them together.
     known : int
@@ -298,7 +299,8 @@ def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
         Row 1 of a table that shows none.
     """
     best: Head | None = None
-    for at, (number, cells) in enumerate(rows[:LOOKED_AT]):
+    first = _first_object(rows)
+    for at, (number, cells) in enumerate(rows[:first]):
         numbers = sum(bool(NUMBER.fullmatch(cell.strip())) for cell in cells)
         if sum(bool(cell.strip()) for cell in cells) < 2 or numbers > 0.2 * len(cells):
             continue
@@ -319,12 +321,60 @@ def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
         # "cm" and "kg" below the names.
         more = at < len(rows) and rows[at][0] == best.row + best.rows and is_of_units(rows[at][1])
         return replace(best, rows=best.rows + more)
+    known = 0 if best is None else best.known
     widths = [sum(bool(cell.strip()) for cell in cells) for _, cells in rows[:LOOKED_AT]]
     widest = max(widths, default=0)
-    for (number, cells), width in zip(rows, widths, strict=False):
+    for (number, cells), width in zip(rows[:first], widths, strict=False):
         if width == widest > 1 and not _numbered(cells):
-            return Head(number, 1, 0 if best is None else best.known)
+            return Head(number, 1, known)
+    if first < len(rows) and all(width < _FULL * widths[first] for width in widths[:first]):
+        return Head(0, 1, 0)
     return Head(rows[0][0] if rows else 1, 1, 0)
+
+
+_FULL, _LIKE, _COMPARED = 0.8, 2, 40
+"""Share of the cells of the rows below that an object fills at least, how many of its cells must be written as those
+below them, and with how many rows it is compared (judgement)."""
+
+_LETTERED = re.compile(r"[^\W\d_]+")
+
+
+def _first_object(rows: Sequence[tuple[int, list[str]]]) -> int:
+    """Return the index of the first row that is an object and names no columns, for those below are written as it is.
+
+    `LOOKED_AT` where none of the first rows is one.
+    """
+    for at, (_, cells) in enumerate(rows[:LOOKED_AT]):
+        below = [row for _, row in rows[at + 1 : at + 1 + _COMPARED]]
+        filled = sum(bool(cell.strip()) for cell in cells)
+        usual = median(sum(bool(cell.strip()) for cell in row) for row in below) if len(below) >= _LIKE else 0
+        if filled < max(_FULL * usual, 2):
+            continue
+        known = sum(len(cell) <= _LONGEST and outright(cell) for cell in cells if cell.strip())
+        if usual and _alike(cells, below) >= max(_LIKE, known + 1):
+            return at
+    return LOOKED_AT
+
+
+def _alike(cells: Sequence[str], below: Sequence[Sequence[str]]) -> int:
+    """Return how many cells have a figure and are written as most of those below them: 1921.7 above 1950.112."""
+    found = 0
+    for place, cell in enumerate(cells):
+        if not any(map(str.isdigit, cell)) or len(cell) > _LONGEST:
+            continue
+        shapes = Counter(_shape(row[place]) for row in below if place < len(row) and row[place].strip())
+        known = sum(shapes.values())
+        others = {row[place].strip() for row in below if place < len(row)}
+        found += known >= _LIKE and shapes[_shape(cell)] >= _SAME * known and not (cell.strip() in others and known > 1)
+    return found
+
+
+_SAME = 0.3
+"""Share of the texts of a column that must be written as the one above them (judgement)."""
+
+
+def _shape(text: str) -> str:
+    return _LETTERED.sub("a", _DIGITS.sub("0", text.strip()))
 
 
 def _of_table(cells: Sequence[str], below: Sequence[Sequence[str]]) -> bool:
