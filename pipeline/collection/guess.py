@@ -11,6 +11,7 @@ import tomlkit
 
 from pipeline.collection.display_words import says_away
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.guessing.by_values import accessions, by_values
 from pipeline.collection.guessing.columns import (
     Column,
     candidates,
@@ -200,6 +201,10 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     _places_of_cases(found, told)
     headed = place_by_heading(found, columns) if "gallery" not in told.choices else ""
     told.doubts += [headed] * bool(headed)
+    by_value = by_values(columns, found, told.choices)
+    for field, (column, why) in by_value.items():
+        found[field] = column
+        told.doubts.append(f"{field} is taken from {column.name!r}, for {why}; --choose {field}=- leaves that")
     named_twice = name_and_title(able, found, told.choices)
     if named_twice is not None:
         found["object_name"], found["title"] = named_twice
@@ -207,7 +212,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         told.sure.append(
             f"{named_twice[0].name!r} names things and {named_twice[1].name!r} is their title: it has more words"
         )
-    if "title" not in told.choices and not any(key in found and found[key].filled for key in _NAMING):
+    if "title" not in told.choices and not any(key in found and found[key].filled for key in {*_NAMING} - {*by_value}):
         saying = naming_among(columns, found.values())
         if saying is not None:
             found["title"] = saying
@@ -488,7 +493,11 @@ def _unique(name: str, columns: Sequence[Column], found: Mapping[str, Column]) -
     able = [column for column in columns if column.filled and len(set(column.filled)) == len(column.values)]
     if able:
         fields = {id(column) for column in found.values()}
-        return min(able, key=lambda one: (id(one) in fields, not one.numbering, 0 if one.numbering else one.length))
+
+        def unlike(one: Column) -> tuple[bool, bool, float, float]:
+            return id(one) in fields, not one.numbering, -round(accessions(one), 1), 0 if one.numbering else one.length
+
+        return min(able, key=unlike)
     there = ", ".join(repr(column.name) for column in columns[:30])
     raise CollectionError(
         f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "

@@ -133,21 +133,28 @@ def _bodily(texts: Sequence[Column], filled: set[str], title: Column) -> bool:
 
 def _names_things(titles: Sequence[str]) -> bool:
     """Whether most titles are short names of things that are no pictures: their first or their last word is one."""
-    words, endings = _things()
-    named = 0
-    for title in titles:
-        said = _COUNTED.sub("", words_of(title).strip(), count=1)
-        head = re.findall(r"[^\W\d_]+", _folded(_HEAD.split(said, maxsplit=1)[0]))
-        if 0 < len(head) <= _SHORT:
-            named += not words.isdisjoint((head[0], head[-1], " ".join(head))) or head[-1].endswith(endings)
+    named = sum(map(names_thing, titles))
     return named >= _FEWEST and named >= _MOST * len(titles)
+
+
+def names_thing(text: str) -> bool:
+    """Say whether a text is the short name of a thing that is no picture: its first or its last word is one.
+
+    text : a title or the name of an object
+    """
+    words, endings = _things()
+    said = _COUNTED.sub("", words_of(text).strip(), count=1)
+    head = re.findall(r"[^\W\d_]+", folded(_HEAD.split(said, maxsplit=1)[0]))
+    if not 0 < len(head) <= _SHORT:
+        return False
+    return not words.isdisjoint((head[0], head[-1], " ".join(head))) or head[-1].endswith(endings)
 
 
 @cache
 def _things() -> tuple[frozenset[str], tuple[str, ...]]:
     """Return the names of things that hang flat neither on nor as a wall, and the endings of such names."""
     entries = {
-        _folded(entry)
+        folded(entry)
         for row in table("rules")
         if row["class"] not in ("framed", "wall_painting", "installation")
         for entry in row["words"].split("|")
@@ -157,7 +164,11 @@ def _things() -> tuple[frozenset[str], tuple[str, ...]]:
     return frozenset(entry for entry in entries if entry[0] != "*"), endings
 
 
-def _folded(text: str) -> str:
+def folded(text: str) -> str:
+    """Return a text without capitals and accents.
+
+    text : any
+    """
     return "".join(one for one in normalize("NFKD", text) if not combining(one)).casefold()
 
 
