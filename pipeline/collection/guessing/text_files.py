@@ -12,6 +12,7 @@ from itertools import islice
 from statistics import median
 from unicodedata import category
 
+from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
 from pipeline.collection.guessing.names import named, outright
@@ -350,25 +351,36 @@ def _first_object(rows: Sequence[tuple[int, list[str]]]) -> int:
         usual = median(sum(bool(cell.strip()) for cell in row) for row in below) if len(below) >= _LIKE else 0
         if filled < max(_FULL * usual, 2):
             continue
-        known = sum(len(cell) <= _LONGEST and outright(cell) for cell in cells if cell.strip())
-        if usual and _alike(cells, below) >= max(_LIKE, known + 1):
+        if usual and cells not in below and _is_object(cells, below):
             return at
     return LOOKED_AT
 
 
-def _alike(cells: Sequence[str], below: Sequence[Sequence[str]]) -> int:
-    """Return how many cells have a figure and are written as most of those below them: 1921.7 above 1950.112."""
-    found = 0
-    for place, cell in enumerate(cells):
-        if not any(map(str.isdigit, cell)) or len(cell) > _LONGEST:
+def _is_object(cells: Sequence[str], below: Sequence[Sequence[str]]) -> bool:
+    """Whether more cells are like those below them than name fields: 1921.7 above 1950.112, 12 cm above 9 cm, a room.
+
+    What comes again below is no name of a column.
+    """
+    alike = known = 0
+    for place, cell in enumerate(cell.strip() for cell in cells):
+        under = [row[place].strip() for row in below if place < len(row) and row[place].strip()]
+        if not cell or len(under) < _LIKE:
             continue
-        shapes = Counter(_shape(row[place]) for row in below if place < len(row) and row[place].strip())
-        known = sum(shapes.values())
-        others = {row[place].strip() for row in below if place < len(row)}
-        found += known >= _LIKE and shapes[_shape(cell)] >= _SAME * known and not (cell.strip() in others and known > 1)
-    return found
+        if any(map(str.isdigit, cell)):
+            same = sum(map(_shape(cell).__eq__, map(_shape, under))) >= _SAME * len(under)
+            alike += same or (_measures(cell) and sum(map(_measures, under)) >= _SAME * len(under))
+        elif cell in under:
+            alike += 1
+        else:
+            known += len(cell) <= _LONGEST and outright(cell)
+    return alike >= max(_LIKE, known + 1)
 
 
+def _measures(text: str) -> bool:
+    return len(text) <= _LONGEST_SIZES and any(part.unit for part in parse(text).parts)
+
+
+_LONGEST_SIZES = 300
 _SAME = 0.3
 """Share of the texts of a column that must be written as the one above them (judgement)."""
 
