@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
+from itertools import pairwise
 
-from pipeline.collection.guessing.columns import Column
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.guessing.columns import Column, internal
 from pipeline.collection.guessing.names import named
 from pipeline.collection.guessing.what import folded, names_thing
 from pipeline.collection.guessing.within import placed
@@ -113,3 +115,60 @@ def accessions(column: Column) -> float:
 
 def _is_accession(text: str) -> bool:
     return _ACCESSION.fullmatch(text) is not None and (_DATE.fullmatch(text) is None)
+
+
+def repeated_in(column: Column) -> float:
+    """Share of a column's cells that repeat another, or are empty.
+
+    column : any
+    """
+    return 1.0 - len(column.distinct) / len(column.values) if column.values else 1.0
+
+
+def second_number(columns: Sequence[Column], found: Mapping[str, Column]) -> Column | None:
+    """Return a column of other numbers, where that of the objects' numbers says of several that they have none.
+
+    Whole numbers are rather those of a database than codes of another kind.
+    """
+    fields = {id(column) for column in found.values()}
+    able = [column for column in columns if id(column) not in fields and column.numbering]
+    alone = [column for column in able if len(column.distinct) == len(column.values)]
+    whole = [column for column in alone if all(map(str.isdecimal, column.filled))]
+    return next(iter(whole or alone), None) if found["object_number"].blanks else None
+
+
+def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column]) -> Column:
+    """Return the column that tells rows apart: what may be a number first, prose and what is another field last."""
+    able = [column for column in columns if column.filled and len(set(column.filled)) == len(column.values)]
+    if able:
+        fields = {id(column) for column in found.values()}
+
+        def unlike(one: Column) -> tuple[bool, bool, float, float]:
+            return id(one) in fields, not one.numbering, -round(accessions(one), 1), 0 if one.numbering else one.length
+
+        return min(able, key=unlike)
+    there = ", ".join(repr(column.name) for column in columns[:30])
+    raise CollectionError(
+        f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "
+        "object_number=COLUMN; or where the names of the columns stand: --choose header_row=NUMBER"
+    )
+
+
+def perhaps_sizes(columns: Sequence[Column]) -> str:
+    """Return in words which columns hold numbers as sizes are, where no name of theirs says so; "" for none.
+
+    columns : those that no field takes
+    """
+    able = [one.name for one in columns if one.numeric and _varied(one) and not internal(one)]
+    return f"; {', '.join(map(repr, able[:10]))} may hold sizes, for they are of different numbers" if able else ""
+
+
+def _varied(column: Column) -> bool:
+    """Whether numbers are neither years nor such as count the rows, and several of them come again or have decimals."""
+    numbers = [float(text.replace(",", ".")) for text in column.numbers[:_SOME]]
+    years = sum(_FIRST_YEAR <= number <= _LAST_YEAR and number.is_integer() for number in numbers)
+    counted = all(after - before == 1 for before, after in pairwise(numbers))
+    return len(set(numbers)) >= _FEWEST and not counted and years < _MOSTLY * len(numbers) and min(numbers) >= 0
+
+
+_FIRST_YEAR, _LAST_YEAR = 1400, 2100
