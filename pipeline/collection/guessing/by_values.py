@@ -24,6 +24,7 @@ _FEWEST = 3
 """Different texts that a column must have (judgement)."""
 
 _WORD = re.compile(r"[^\W\d_]+")
+_YEARS = re.compile(r"(?:c(?:a|irca)?\.? ?)?(?:1[0-9]|20)\d\d(?:\s?[-\u2013/]\s?(?:1[0-9]|20)\d\d|-\d\d-\d\d.*)?s?")
 _DATE = re.compile(r"\d{1,4}[./-]\d{1,2}[./-]\d{1,4}(?:[ T].*)?|(?:1[4-9]|20)\d\d")
 _ACCESSION = re.compile(
     # A year and what follows it, three numbers and more, or letters before numbers.
@@ -117,6 +118,12 @@ def _is_accession(text: str) -> bool:
     return _ACCESSION.fullmatch(text) is not None and (_DATE.fullmatch(text) is None)
 
 
+def _dated(column: Column) -> float:
+    """Share of a column's texts that are years or dates, and so number no object."""
+    some = column.distinct[:_SOME]
+    return sum(_YEARS.fullmatch(text) is not None for text in some) / len(some) if some else 0.0
+
+
 def repeated_in(column: Column) -> float:
     """Share of a column's cells that repeat another, or are empty.
 
@@ -143,8 +150,17 @@ def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column])
     if able:
         fields = {id(column) for column in found.values()}
 
-        def unlike(one: Column) -> tuple[bool, bool, float, float]:
-            return id(one) in fields, not one.numbering, -round(accessions(one), 1), 0 if one.numbering else one.length
+        def unlike(one: Column) -> tuple[bool, bool, bool, float, float]:
+            sentences = one.prose and sum(" " in text for text in one.filled) > _MOSTLY * len(one.filled)
+            dated = _dated(one) >= _MOSTLY
+            number = one.numbering and not dated
+            return (
+                sentences or dated,
+                id(one) in fields,
+                not number,
+                -round(accessions(one), 1),
+                0 if number else one.length,
+            )
 
         return min(able, key=unlike)
     there = ", ".join(repr(column.name) for column in columns[:30])

@@ -48,6 +48,8 @@ def objects_in(found: Sequence[Any], chosen: str | None, sure: list[str]) -> dic
         other = better_list(found, held if isinstance(held, list) else found)
         if other is not None:
             where = other[0]
+            if not where:
+                return {}
             sure.append(f"objects are listed as {where!r}{', in groups whose facts they have too' * other[1]}")
             return {"records": where} | ({"layout": "grouped"} if other[1] else {})
     if where:
@@ -84,7 +86,8 @@ def better_list(values: Sequence[Any], taken: Sequence[Any]) -> tuple[str, bool]
     now = _likeness([one for one in taken if isinstance(one, dict)])
     if now[0]:
         return None
-    found: dict[str, tuple[bool, list[dict[str, Any]]]] = {}
+    whole = [one for one in values if isinstance(one, dict)]
+    found: dict[str, tuple[bool, list[dict[str, Any]]]] = {"": (False, whole)} if whole else {}
     budget = [_MOST]
     for value in values:
         for path, grouped, entries in _lists(value, "", len(values) > 1, budget):
@@ -136,7 +139,7 @@ def _likeness(entries: Sequence[dict[str, Any]]) -> tuple[bool, int, int]:
     """Return whether entries name numbers of objects, how many fields they name, and how many entries there are."""
     said = [what for name in {name for one in entries[:_SEEN] for name in flat(_own(one))[0]} if (what := named(name))]
     own = any(what.field == "object_number" and not what.internal for what in said)
-    return own, len({what.field for what in said}), len(entries)
+    return own, len({what.field for what in said}), min(len(entries), _SEEN)
 
 
 def _own(entry: dict[str, Any]) -> dict[str, Any]:

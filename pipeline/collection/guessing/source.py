@@ -149,8 +149,8 @@ _SIGNS = (
 
 _PROGRAM = re.compile(
     # What may stand before: comments and what it takes from other files.
-    rb"(?:\xef\xbb\xbf)?\s*(?:(?://[^\n]*|/\*.{0,4000}?\*/|[\"']use \w+[\"'];?|import\s[^\n]*|(?:export\s+)?(?:type|interface)\s"
-    rb"[^}]{0,8000}\})\s*){0,60}(?:export\s+default\s*[\[{]|module\.exports\s*=|(?:export\s+)?(?:const|let|var)\s+[\w$]+)",
+    rb"(?:\xef\xbb\xbf)?\s*(?:(?://[^\n]*|/\*.{0,4000}?\*/|[\"']use \w+[\"'];?|import\s[^\n]*"
+    rb"|(?:export\s+)?(?:type|interface)\s[^}]{0,8000}\})\s*){0,60}(?:export\s+default\s*[\[{]|module\.exports\s*=|(?:export\s+)?(?:const|let|var)\s+[\w$]+)",
     re.DOTALL,
 )
 """How a file of JavaScript or TypeScript begins that holds values."""

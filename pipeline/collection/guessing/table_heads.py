@@ -97,21 +97,21 @@ def web_page(path: Path, told: GuessNotes) -> dict[str, Any]:
     encoding = told.choices.get("encoding") or encoding_of(head)
     with opened_file(path) as binary:
         tables = page_tables(cast(BufferedReader, binary), path.name, encoding)
-    able = [[row for row in table if any(row[1])][: LOOKED_AT + 60] for table in tables]
+    able = {at: _counted(table) for at, table in enumerate(tables) if sum(len(cells) > 1 for _, cells in table) > 1}
     if not able:
         raise CollectionError(
-            f"{path.name}: a web page without a table; name the museum's export itself, or export the list as CSV"
+            f"{path.name}: a web page without a table; name the museum's export itself, or export the list as CSV or "
+            ".xlsx"
         )
-    best = max(range(len(able)), key=lambda at: (table_head(_counted(able[at])).known, len(tables[at])))
-    source: dict[str, Any] = {"format": "html", "encoding": encoding}
-    if best:
-        source["table"] = best + 1
+    best = max(able, key=lambda at: (table_head(able[at]).known, len(able[at])))
+    source: dict[str, Any] = {"format": "html", "encoding": encoding} | ({"table": best + 1} if best else {})
     if len(able) > 1:
         told.doubts.append(f"of {len(able)} tables of the page number {best + 1} looks most like the objects")
-    set_head(source, _counted(able[best]), told)
+    set_head(source, able[best], told)
     return source
 
 
-def _counted(rows: Sequence[tuple[int, list[str]]]) -> list[tuple[int, list[str]]]:
-    """Return rows by their numbers in the table, and not by lines of the page, on which several may stand."""
-    return [(number, cells) for number, (_, cells) in enumerate(rows, start=1)]
+def _counted(table: Sequence[tuple[int, list[str]]]) -> list[tuple[int, list[str]]]:
+    """Return the first rows that are not blank, by their numbers in the table: several may stand on one line."""
+    rows = enumerate(table[: LOOKED_AT + 60], start=1)
+    return [(number, cells) for number, (_, cells) in rows if any(map(str.strip, cells))]

@@ -120,6 +120,9 @@ def _kana(head: bytes, encoding: str) -> float:
     return (kana - 2 * half) / len(beyond) if beyond else 0.0
 
 
+_CUT_NUMBER = re.compile(r"\d,\d")
+
+
 def delimiter_of(text: str) -> str:
     """Return what parts the cells of a text: where most rows have as many cells, and the most cells.
 
@@ -139,7 +142,9 @@ def delimiter_of(text: str) -> str:
         if not widths:
             return 0.0, 0
         width, times = Counter(widths).most_common(1)[0]
-        return (times / len(widths), width) if width > 1 else (0.0, 0)
+        # "H 23,5 cm" is cut by no comma where another sign parts the cells.
+        cut = len(_CUT_NUMBER.findall(text)) // max(1, len(widths)) if delimiter == "," else 0
+        return (times / len(widths), width - cut) if width > 1 else (0.0, 0)
 
     return max(_DELIMITERS, key=regular)
 
@@ -369,10 +374,11 @@ def _is_object(cells: Sequence[str], below: Sequence[Sequence[str]]) -> bool:
         if any(map(str.isdigit, cell)):
             same = sum(map(_shape(cell).__eq__, map(_shape, under))) >= _SAME * len(under)
             alike += same or (_measures(cell) and sum(map(_measures, under)) >= _SAME * len(under))
-        elif cell in under:
-            alike += 1
         else:
-            known += len(cell) <= _LONGEST and outright(cell)
+            # A name that stands twice may be merged over two rows of a head.
+            name = len(cell) <= _LONGEST and outright(cell)
+            alike += cell in under and not name
+            known += name and cell not in under
     return alike >= max(_LIKE, known + 1)
 
 

@@ -23,6 +23,7 @@ from pipeline.collection.sources.base import Opened, Request, Source
 from pipeline.collection.sources.database import Database, QuerySettings
 from pipeline.collection.sources.delimited import Encoding
 from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.heads import numbered_heads
 from pipeline.collection.sources.tables import lay
 
 _STATEMENT = re.compile(rb"(?:CREATE\s+TABLE|INSERT\s+INTO|COPY\s+[\w.\"]+\s*\()", re.IGNORECASE)
@@ -223,7 +224,8 @@ class _Tables:
         while self._next() and self._said == "(":
             line = self._at
             cells = self._values()
-            names = columns or known
+            # Without CREATE TABLE the columns have no names.
+            names = columns or known or numbered_heads(len(cells))
             if len(cells) != len(names):
                 self._at = line
                 raise CollectionError(

@@ -55,6 +55,7 @@ _ADDRESS = re.compile(r"https?://\S+", re.ASCII)
 ADDRESS = "url"
 """Below a name with several texts, of which some are addresses: these."""
 
+_PAIR = 2
 _SPOKEN = ("lang", "language", "id")
 """Names of what may look like a unit, and is none."""
 
@@ -139,6 +140,10 @@ def flat(record: Mapping[str, Any], unit: str | None = None) -> tuple[dict[str, 
             literal = _literal(value)
             if literal is not None:
                 put(path, as_text(literal))
+                return
+            amount = _amount_alone(value) if path else ""
+            if amount:
+                put(path, amount)
                 return
             entries = listed(value)
             if entries is not None:
@@ -240,7 +245,15 @@ def _number_within(value: Mapping[str, Any]) -> str | None:
     if named is not None:
         return named
     able = [name for name in value if name not in _SPOKEN and _amount(_text(value[name]))]
-    return able[0] if len(able) == 1 and any(unit_of(_text(one)) for one in value.values()) else None
+    told = any(unit_of(_text(one)) for name, one in value.items() if name not in _SPOKEN)
+    return able[0] if len(able) == 1 and (told or (_amount(_text(value[able[0]])) or ("", ""))[1]) else None
+
+
+def _amount_alone(value: Mapping[str, Any]) -> str:
+    """Return number and unit of what holds these two and nothing else, in words that are not known: 12 cm; "" else."""
+    number = _number_within(value) if len(value) == _PAIR and not _named(value, _VALUES) else None
+    unit = next((_text(one).strip() for name, one in value.items() if name != number), "")
+    return f"{_text(value[number]).strip()} {unit}" if number is not None and unit_of(unit) else ""
 
 
 def _is_mass(value: Any) -> bool:

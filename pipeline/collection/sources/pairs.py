@@ -10,6 +10,8 @@ _NAMES = (
     *("caption", "heading", "bezeichnung", "feld", "nom", "champ", "nome", "campo", "etichetta", "nombre"),
 )
 _VALUES = ("value", "values", "val", "content", "text", "data", "wert", "valeur", "valore", "valor")
+_WITHIN = ("element", "term", "type", "definition")
+"""Names of what has the name of the field within it."""
 _LONGEST = 60
 """Characters of the name of a field."""
 _FEWEST = 2
@@ -38,12 +40,19 @@ def pairs_in(entries: Sequence[Any]) -> list[tuple[str, Any]] | None:
     """
     if len(entries) < _FEWEST or not all(isinstance(one, dict) for one in entries):
         return None
-    name = next((key for key in _NAMES if all(_said(one.get(key)) for one in entries)), None)
     value = next((key for key in _VALUES if all(key in one for one in entries)), None)
-    if name is None or value is None:
+    said = next(
+        (found for key in (*_NAMES, *_WITHIN) if all(found := [_said(_name(one.get(key))) for one in entries])), []
+    )
+    if not said or value is None:
         return None
-    found = [(_said(one[name]), _plain(one[value])) for one in entries]
+    found = [(name, _plain(one[value])) for name, one in zip(said, entries, strict=True)]
     return found if len({said.casefold() for said, _ in found}) == len(found) else None
+
+
+def _name(value: Any) -> Any:
+    """Return the name that what stands for a field has: "Title" of `{"id": 50, "name": "Title"}`."""
+    return next((value[key] for key in _NAMES if key in value), value) if isinstance(value, dict) else value
 
 
 def _said(value: Any) -> str:
