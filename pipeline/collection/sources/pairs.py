@@ -41,13 +41,11 @@ def pairs_in(entries: Sequence[Any]) -> list[tuple[str, Any]] | None:
     if len(entries) < _FEWEST or not all(isinstance(one, dict) for one in entries):
         return None
     value = next((key for key in _VALUES if all(key in one for one in entries)), None)
-    said = next(
-        (found for key in (*_NAMES, *_WITHIN) if all(found := [_said(_name(one.get(key))) for one in entries])), []
-    )
-    if not said or value is None:
+    able = ([_said(_name(one.get(key))) for one in entries] for key in (*_NAMES, *_WITHIN))
+    names = next(filter(all, able), [])
+    if value is None or len({name.casefold() for name in names}) < len(entries):
         return None
-    found = [(name, _plain(one[value])) for name, one in zip(said, entries, strict=True)]
-    return found if len({said.casefold() for said, _ in found}) == len(found) else None
+    return [(name, _plain(one[value])) for name, one in zip(names, entries, strict=True)]
 
 
 def _name(value: Any) -> Any:
