@@ -165,7 +165,7 @@ class _Open:
             return
         cells = self.rows[-1][1]
         text = re.sub(r"[ \t\r\f\xa0]+", " ", "".join(self.text)).strip()
-        text = re.sub(r"\s*\n\s*", "\n", text)
+        text = re.sub(r"[;,]?\s*\n\s*", "; ", text)
         across, down = self.span
         if down > 1:
             self.down |= {len(cells) + at: (down - 1, text if at == 0 else "") for at in range(across)}
@@ -223,7 +223,7 @@ class _Reader(HTMLParser):
 
     def handle_data(self, data: str) -> None:
         if self._open and not self._unseen and self._open[-1].text is not None:
-            # A line that ends within a text is a blank; one that <br> ends is a line.
+            # A line that ends within a text is a blank; what <br> parts are several texts.
             self._open[-1].text.append(data.replace("\r", " ").replace("\n", " "))
 
 
