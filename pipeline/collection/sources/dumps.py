@@ -114,7 +114,7 @@ def dump_as_database(path: Path, encoding: str, limits: Limits = STANDARD) -> It
         text = path.read_bytes().decode(encoding, "replace").removeprefix("\ufeff")
     except OSError as problem:
         raise unreadable(path.name, problem) from problem
-    found = _Tables(text, path.name, limits.rows).read()
+    found = _DumpTables(text, path.name, limits.rows).read()
     if not any(rows for _, rows in found.values()):
         raise CollectionError(f"{path.name}: a dump without a row; export the tables with what is in them")
     with TemporaryDirectory(prefix="kouros-dump-") as home:
@@ -126,7 +126,7 @@ def dump_as_database(path: Path, encoding: str, limits: Limits = STANDARD) -> It
         yield f"sqlite:///{file}"
 
 
-class _Tables:
+class _DumpTables:
     """Reads the tables of a dump: of each its columns, and its rows."""
 
     def __init__(self, text: str, file: str, most: int) -> None:
@@ -162,6 +162,10 @@ class _Tables:
                 # A backslash is a sign like any other there, and ends no quotation.
                 found = re.compile(r"[NE]?'(?:[^']|'')*'", re.IGNORECASE).match(self._text, self._at) or found
                 self._said = found[0]
+            if self._kind == "sign" and self._said in ("'", '"', "`"):
+                raise CollectionError(
+                    f"{self._file}, line {self._line()}: a quotation that is never closed; export the dump again"
+                )
             self._at = found.end()
             if self._kind != "none":
                 return True

@@ -121,7 +121,7 @@ def page_tables(binary: BufferedReader, file: str, encoding: str) -> list[list[t
     """
     binary.seek(0)
     stream = TextIOWrapper(binary, encoding=encoding, errors="replace")
-    reader = _Reader(file)
+    reader = _PageTables(file)
     try:
         size = 0
         while piece := stream.read(_PIECE):
@@ -137,7 +137,7 @@ def page_tables(binary: BufferedReader, file: str, encoding: str) -> list[list[t
     return [table for table in reader.tables if any(cell.strip() for _, cells in table for cell in cells)]
 
 
-class _Open:
+class _OpenTable:
     """A table whose end has not come: its rows, the cells of the last of them, and what hangs down into the next."""
 
     def __init__(self) -> None:
@@ -180,11 +180,11 @@ class _Open:
             cells.append(text)
 
 
-class _Reader(HTMLParser):
+class _PageTables(HTMLParser):
     def __init__(self, file: str) -> None:
         super().__init__(convert_charrefs=True)
         self._file = file
-        self._open: list[_Open] = []
+        self._open: list[_OpenTable] = []
         self._unseen = self._cells = 0
         self.tables: list[list[tuple[int, list[str]]]] = []
 
@@ -193,7 +193,7 @@ class _Reader(HTMLParser):
         if name in _UNSEEN:
             self._unseen += 1
         elif name == "table":
-            self._open.append(_Open())
+            self._open.append(_OpenTable())
             self.tables.append(self._open[-1].rows)
         elif not self._open:
             return

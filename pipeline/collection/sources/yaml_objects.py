@@ -76,7 +76,7 @@ def read_yaml(stream: BinaryIO, file: str) -> Iterator[tuple[int, Any]]:
     CollectionError
         For what is no YAML, for an alias, for what is nested too deeply or larger than RECORD_LIMIT.
     """
-    reader = _Reader(stream, file)
+    reader = _Events(stream, file)
     for event in reader.events:
         if isinstance(event, yaml.DocumentStartEvent):
             first = next(reader.events)
@@ -87,7 +87,7 @@ def read_yaml(stream: BinaryIO, file: str) -> Iterator[tuple[int, Any]]:
                 yield reader.begun(first), value
 
 
-class _Reader:
+class _Events:
     def __init__(self, stream: BinaryIO, file: str) -> None:
         self._file = file
         self._size = 0
