@@ -162,7 +162,7 @@ class _DumpTables:
                 # A backslash is a sign like any other there, and ends no quotation.
                 found = re.compile(r"[NE]?'(?:[^']|'')*'", re.IGNORECASE).match(self._text, self._at) or found
                 self._said = found[0]
-            if self._kind == "sign" and self._said in ("'", '"', "`"):
+            if (self._kind == "plain" and self._escapes) or (self._kind == "sign" and self._said in ("'", '"', "`")):
                 raise CollectionError(
                     f"{self._file}, line {self._line()}: a quotation that is never closed; export the dump again"
                 )
