@@ -11,6 +11,7 @@ import tomlkit
 
 from pipeline.collection.display_words import says_away
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.guessing.by_values import by_values, perhaps_sizes, repeated_in, second_number, unique_in
 from pipeline.collection.guessing.columns import (
     Column,
     candidates,
@@ -31,14 +32,14 @@ from pipeline.collection.guessing.fields import (
 )
 from pipeline.collection.guessing.headings import place_by_heading
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named
+from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.guessing.orders import section_of
 from pipeline.collection.guessing.questions import Question
 from pipeline.collection.guessing.shown import place_of_shown, removed, room_and_position, words_of_display
 from pipeline.collection.guessing.source import (
-    GuessNotes,
     columns_in,
     database,
-    delimited_of,
+    laid,
     objects_of,
     source_of,
     workbook,
@@ -58,7 +59,6 @@ from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.places import parted
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.registry import is_address
-from pipeline.collection.sources.tables import as_database
 
 MOST_REPEATED = 0.1
 """Share of object numbers that may be repeated or missing before another column of numbers is looked for."""
@@ -67,7 +67,7 @@ _SIDES = ("height_m", "width_m", "depth_m", "diameter_m")
 
 _NAMING = ("title", "object_name", "classification", "medium")
 
-_TABLES = ("csv", "tsv", "fixed", "cards", "xlsx", "sql", "json")
+_TABLES = ("csv", "tsv", "fixed", "cards", "xlsx", "sql", "json", "yaml", "html")
 """Formats whose columns are the museum's own."""
 
 _FORMATS = {"lido": "lido", "adlib": "adlib", "museumplus_ria": "museumplus", "linked_art": "linked_art"}
@@ -138,9 +138,8 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         path = Path(where)
         name = path.name
         source = source_of(path, told)
-        if source["format"] == "tables":
-            source |= delimited_of(path, told)
-            with as_database(path, source["encoding"], source["delimiter"]) as url:
+        if source["format"] in ("tables", "dump"):
+            with laid(path, source, told) as url:
                 preset, read, columns = database(url, name, table, told)
             source |= {key: value for key, value in read.items() if key != "format"}
             if preset is not None:
@@ -200,6 +199,10 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     _places_of_cases(found, told)
     headed = place_by_heading(found, columns) if "gallery" not in told.choices else ""
     told.doubts += [headed] * bool(headed)
+    by_value = by_values(columns, found, told.choices)
+    for field, (column, why) in by_value.items():
+        found[field] = column
+        told.doubts.append(f"{field} is taken from {column.name!r}, for {why}; --choose {field}=- leaves that")
     named_twice = name_and_title(able, found, told.choices)
     if named_twice is not None:
         found["object_name"], found["title"] = named_twice
@@ -207,7 +210,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         told.sure.append(
             f"{named_twice[0].name!r} names things and {named_twice[1].name!r} is their title: it has more words"
         )
-    if "title" not in told.choices and not any(key in found and found[key].filled for key in _NAMING):
+    if "title" not in told.choices and not any(key in found and found[key].filled for key in {*_NAMING} - {*by_value}):
         saying = naming_among(columns, found.values())
         if saying is not None:
             found["title"] = saying
@@ -277,7 +280,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if both:
         told.questions[:] = [question for question in told.questions if question.key != "medium"]
         told.sure.append(f"the medium is {' and '.join(repr(column.name) for column in both)} together")
-    second = None if "object_number" in told.choices else _second_number(columns, found)
+    second = None if "object_number" in told.choices else second_number(columns, found)
     length = None if "depth_m" in told.choices else length_beside(columns, found.get("depth_m"))
     place = found.get("gallery")
     writer = Fields(columns, told.choices, told.doubts, told.questions, usual, place, both, second, length)
@@ -350,7 +353,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if not texts and fields.keys().isdisjoint(_SIDES):
         told.doubts.append(
             "no column with sizes was found; --choose height_m=COLUMN (and so on), or --choose dimensions=COLUMN for "
-            "texts such as 12 x 5 cm"
+            f"texts such as 12 x 5 cm{perhaps_sizes(left)}"
         )
     text = tomlkit.dumps(document)
     proposal = Proposal.model_validate(document.unwrap())
@@ -409,7 +412,7 @@ def _chosen(
     _settle_number(able.get("object_number", ()), columns, found, told)
     number = found.get("object_number")
     if number is None:
-        found["object_number"] = number = _unique(name, columns, found)
+        found["object_number"] = number = unique_in(name, columns, found)
         told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
         texts = texts_among(columns, found.values())
         free = [one for one in columns if one is number or (one not in found.values() and one not in texts)]
@@ -423,7 +426,7 @@ def _chosen(
             f"object numbers are taken from {number.name!r}, and not from {others}; --choose object_number=COLUMN "
             "takes another"
         )
-    none = number.blanks if _second_number(columns, found) is not None else ()
+    none = number.blanks if second_number(columns, found) is not None else ()
     numbers = [text for text in number.filled if text not in none]
     repeated = len(numbers) - len(set(numbers))
     if repeated:
@@ -444,12 +447,12 @@ def _settle_number(
 
     That is the next one by its name, or else one that has another number in each row.
     """
-    if "object_number" in told.choices or not able or _repeated(able[0]) <= MOST_REPEATED or able[0].blanks:
+    if "object_number" in told.choices or not able or repeated_in(able[0]) <= MOST_REPEATED or able[0].blanks:
         return
     fields = {id(column) for column in found.values()}
     others = [column for column in columns if id(column) not in fields and column.numbering]
-    others.sort(key=_repeated)
-    other = next((column for column in (*able, *others) if _repeated(column) <= MOST_REPEATED), None)
+    others.sort(key=repeated_in)
+    other = next((column for column in (*able, *others) if repeated_in(column) <= MOST_REPEATED), None)
     if other is not None:
         found["object_number"] = other
         empty = len(able[0].distinct) == len(able[0].filled)
@@ -459,39 +462,9 @@ def _settle_number(
         )
 
 
-def _repeated(column: Column) -> float:
-    """Share of a column's cells that repeat another, or are empty."""
-    return 1.0 - len(column.distinct) / len(column.values) if column.values else 1.0
-
-
 def _column(name: str, columns: Sequence[Column], key: str, wanted: str) -> Column:
     for column in columns:
         if column.name == wanted:
             return column
     there = ", ".join(repr(column.name) for column in columns[:80])
     raise CollectionError(f"{name}: --choose {key}: there is no column {wanted!r}; its columns are {there}")
-
-
-def _second_number(columns: Sequence[Column], found: Mapping[str, Column]) -> Column | None:
-    """Return a column of other numbers, where that of the objects' numbers says of several that they have none.
-
-    Whole numbers are rather those of a database than codes of another kind.
-    """
-    fields = {id(column) for column in found.values()}
-    able = [column for column in columns if id(column) not in fields and column.numbering]
-    alone = [column for column in able if len(column.distinct) == len(column.values)]
-    whole = [column for column in alone if all(map(str.isdecimal, column.filled))]
-    return next(iter(whole or alone), None) if found["object_number"].blanks else None
-
-
-def _unique(name: str, columns: Sequence[Column], found: Mapping[str, Column]) -> Column:
-    """Return the column that tells rows apart: what may be a number first, prose and what is another field last."""
-    able = [column for column in columns if column.filled and len(set(column.filled)) == len(column.values)]
-    if able:
-        fields = {id(column) for column in found.values()}
-        return min(able, key=lambda one: (id(one) in fields, not one.numbering, 0 if one.numbering else one.length))
-    there = ", ".join(repr(column.name) for column in columns[:30])
-    raise CollectionError(
-        f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "
-        "object_number=COLUMN; or where the names of the columns stand: --choose header_row=NUMBER"
-    )

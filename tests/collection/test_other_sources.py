@@ -135,7 +135,7 @@ def test_without_the_package_its_mapping_says_what_there_is(tmp_path: Path) -> N
     (tmp_path / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     with pytest.raises(
         MappingError,
-        match=r"source: there is no format 'jsonl'.*Known are csv, tsv, .*, linked_art, sql, tables, json, xml",
+        match=r"source: there is no format 'jsonl'.*Known are csv, tsv, .*, sql, tables, dump, json, yaml, html, xml",
     ):
         load_mapping(tmp_path / "mapping.toml")
 
@@ -166,7 +166,10 @@ def test_each_kind_has_its_own_name_and_settings() -> None:
         "linked_art",
         "sql",
         "tables",
+        "dump",
         "json",
+        "yaml",
+        "html",
         "xml",
     ]
     for one in SOURCES.own:

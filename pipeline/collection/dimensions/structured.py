@@ -10,7 +10,7 @@ from functools import cache
 from html import unescape
 from typing import Any
 
-from pipeline.collection.dimensions.lexicon import unit_words
+from pipeline.collection.dimensions.lexicon import meanings, unit_words
 
 LONGEST = 20_000
 """Characters of a cell that are looked at: thirty measurements with all that a catalogue says of each."""
@@ -20,6 +20,8 @@ DEEPEST = 6
 _ENTITY = re.compile(r"&(?:#\d{1,6}|#x[\da-f]{1,5}|[a-z]{2,8}\d{0,2});", re.IGNORECASE | re.ASCII)
 _OPENS = re.compile(r"\s*[\[{]\s*[\[{\"']")
 _LISTED = re.compile(r"\s*\[\s*[{\"'].*[}\"']\s*\]\s*\Z", re.DOTALL)
+_FIGURE = re.compile(r"\d{1,6}(?:[.,]\d{1,6})?", re.ASCII)
+_TOLD = 3
 _FORM = 2
 """Labels with units from which a text is a form."""
 _FILLED = re.compile(r"([^\s(\[][^(\[]*)(.*)", re.DOTALL)
@@ -146,6 +148,10 @@ def _lines(of: Any, part: str, depth: int) -> Iterator[tuple[str, str]]:
         if value:
             yield _measured(cells, value, part)
             return
+        unknown = _unknown(of)
+        if unknown:
+            yield part, unknown
+            return
         unit = _first(cells, _UNITS)
         for key, one in of.items():
             if isinstance(one, Mapping | list):
@@ -154,6 +160,19 @@ def _lines(of: Any, part: str, depth: int) -> Iterator[tuple[str, str]]:
                 yield part, f"{str(key)[:_MOST]} {str(one)[:_MOST]} {unit}".strip()
     elif isinstance(of, str) and of.strip():
         yield part, of[:_MOST]
+
+
+def _unknown(of: Mapping[str, Any]) -> str:
+    """Return what one number, one unit and one word say under any names: `{"t": "height", "v": 12, "u": "cm"}`."""
+    texts = {
+        key: str(one).strip() for key, one in of.items() if isinstance(one, int | float | str) and str(one).strip()
+    }
+    number = [key for key, text in texts.items() if _FIGURE.fullmatch(text)]
+    unit = [key for key, text in texts.items() if text.casefold() in unit_words()]
+    words = [text for key, text in texts.items() if key not in (*number, *unit) and text.casefold() in meanings()]
+    if len(number) != 1 or len(unit) != 1 or len(words) != 1 or len(texts) != _TOLD:
+        return ""
+    return f"{words[0]} {texts[number[0]]} {texts[unit[0]]}"
 
 
 def _measured(cells: Mapping[str, Any], value: str, part: str) -> tuple[str, str]:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 
 from pipeline.collection.guessing.columns import NUMBER, Column, candidates
-from pipeline.collection.guessing.names import named, plain, unit_in
+from pipeline.collection.guessing.names import named, path_of, plain, unit_in
 from pipeline.collection.sources.base import LongAgain, LongForm, LongSide
 from pipeline.collection.sources.measurement_terms import kind_of, kind_within, part_of, plain_word, unit_of
 from pipeline.collection.sources.measurements import FRACTION
@@ -73,9 +73,7 @@ def long_form_of(columns: Sequence[Column]) -> LongForm | None:
         return None
     at = list(columns).index(type_column)
     numeric = [c for c in columns if c.numeric and c is not object_column]
-    values = [c for c in numeric if plain(c.name) in VALUES] or sorted(
-        numeric, key=lambda c: abs(list(columns).index(c) - at)
-    )
+    values = [c for c in numeric if _is_value(c)] or sorted(numeric, key=lambda c: abs(list(columns).index(c) - at))
     if not values:
         return None
     unit = next((c for c in columns if c.units >= 0.6 and c is not type_column), None)
@@ -104,7 +102,7 @@ def _within(columns: Sequence[Column]) -> LongForm | None:
         found: dict[str, list[tuple[Column, list[list[str]]]]] = {"type": [], "unit": [], "value": []}
         for column, pieces in apart:
             some = [piece.strip() for one in pieces for piece in one if piece.strip()]
-            for name, tells in (("type", kind_within), ("unit", unit_of), ("value", _number)):
+            for name, tells in (("type", _kind_alone), ("unit", unit_of), ("value", _number)):
                 # Blanks between separators name nothing: " | ".
                 if some and sum(tells(text) is not None for text in some) >= _MOSTLY * len(some):
                     found[name].append((column, pieces))
@@ -112,8 +110,8 @@ def _within(columns: Sequence[Column]) -> LongForm | None:
         objects = [c for c in candidates(columns).get("object_number", ()) if c.filled]
         for kind, kinds in found["type"] if objects else ():
             values = [column for column, pieces in found["value"] if _even(kinds, pieces)]
-            # Decimals before fractions.
-            values.sort(key=lambda one: sum("/" in text for text in one.filled))
+            # What is called a value before the ranks of measurements, decimals before fractions.
+            values.sort(key=lambda one: (not _is_value(one), sum("/" in text for text in one.filled)))
             units = [column for column, _ in found["unit"]]
             pairs = [(value, _unit_beside(value, units, columns)) for value in values]
             if pairs:
@@ -127,6 +125,15 @@ def _within(columns: Sequence[Column]) -> LongForm | None:
                     again=tuple(LongAgain(value=value, unit=unit) for value, unit in told[1:] if unit != told[0][1]),
                 )
     return None
+
+
+def _is_value(column: Column) -> bool:
+    return plain(path_of(column.name)[-1]) in VALUES
+
+
+def _kind_alone(text: str) -> object:
+    """Return the kind of measurement that a text names, and nothing where it tells a number besides: "H: 2.5 cm"."""
+    return None if any(map(str.isdigit, text)) else kind_within(text)
 
 
 def _numbered(columns: Sequence[Column]) -> LongForm | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
@@ -12,6 +12,16 @@ from unicodedata import combining, normalize
 
 from pydantic import AfterValidator
 
+from pipeline.collection.guessing.name_words import (
+    ABOUT,
+    DENOTING,
+    ELSEWHERE,
+    FORMER,
+    HOLDING,
+    OF_CODES,
+    OF_KEYS,
+    USUAL,
+)
 from pipeline.collection.guessing.units import told_unit
 from pipeline.collection.mapping import MAPPABLE
 from pipeline.collection.record import units_of
@@ -90,33 +100,6 @@ _STUFF = re.compile(r"mat(?:eri|ier)|werkstoff|malzeme|tworzyw|υλικ|мате
 _CRAFT = re.compile(r"te(?:ch|k|c|h|hn)ni|τεχνικ|техник|tekniik|技法|기법")
 """Parts of the names of columns that tell what a thing is made of, and how; folded."""
 
-_FORMER = frozenset(
-    {
-        *("former", "previous", "old", "other", "alt", "alte", "altes", "fruhere", "fruherer", "ancien", "ancienne"),
-        *("anciens", "vecchio", "vecchia", "precedente", "anterior", "antiguo", "antigo", "oud", "oude", "vorige"),
-        *("vechi", "veche", "lender", "leihgeber", "donor", "loan", "art", "mode", "modo", "status", "source", "value"),
-        *("date", "year", "datum", "jahr", "annee", "anno", "data", "fecha", "ano", "jaar", "anul", "method", "type"),
-        *("notes", "remarks", "by", "insurance"),
-    }
-)
-"""Words that say that something else is meant than the object's own number and place now."""
-
-
-_ABOUT = frozenset(
-    {"measurement", "measurements", "measure", "dimension", "dimensions", "size", "sizes", "maß", "misura"}
-)
-"""Words before the name of a side that say only that it is one."""
-
-
-_DENOTING = frozenset({"bezeichnung", "benennung", "denomination", "designation", "denominazione", "denominacion"})
-"""What is called so is called something, a place too."""
-
-_OF_CODES = frozenset({"code", "id", "key", "uri", "url", "no", "since", "date", "from", "until"})
-"""Names within a name of what is less than a name."""
-
-_OF_KEYS = frozenset({"id", "ids", "key", "uri", "url"})
-"""Words that end the name of a column of keys or addresses."""
-
 
 def is_length(name: str) -> bool:
     """Whether a column is of lengths, which no field has: the depth takes them where no other column is for it."""
@@ -127,7 +110,7 @@ def is_length(name: str) -> bool:
 def is_side(name: str) -> bool:
     """Whether the name of a column begins as those of sizes do, "measurement_girth", or stands below that of sizes."""
     upper, between, _ = name.partition(BETWEEN)
-    return bool(_ABOUT.intersection(plain(name).split()[:1])) or bool(between and _says(upper) == TEXTS)
+    return bool(ABOUT.intersection(plain(name).split()[:1])) or bool(between and _says(upper) == TEXTS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,29 +132,8 @@ class ColumnMeaning:
     internal: bool = False
 
 
-_ELSEWHERE = frozenset({
-    "image", "images", "img", "picture", "pictures", "photo", "photos", "photograph", "photographs", "thumbnail",
-    "thumbnails", "media", "visuel", "visuels", "bild", "bilder", "abbildungen", "immagini", "imagenes", "imagem",
-    "afbeeldingen", "billeder", "iiif", "files", "file", "exhibition", "exhibitions", "exhibit", "ausstellungen",
-    "expositions", "mostre", "exposiciones", "exposities", "udstillinger", "related", "parts", "creator",
-    "creators", "artist", "artists", "maker", "makers", "people", "person", "agents", "constituents", "production",
-    "author", "auteur", "auteurs", "documentation", "references", "bibliography", "publications", "literature",
-    "provenance", "inscriptions", "geographies", "geography", "places", "links", "rights", "citations", "children",
-    "parent", "label", "colors",
-})  # fmt: skip
-"""Words of what an object has or what was made of it: a size, number or title within is not the object's."""
-
-_HOLDING = frozenset({
-    *("name", "value", "text", "label", "term", "content", "preflabel", "displayname", "de", "en", "fr", "keyword"),
-    *("summarydata", "summary", "wert", "valeur", "valore", "valor", "previewvrt", "exportclb"),
-})  # fmt: skip
-"""Names within a name that say only that its value follows: "object_names.name"."""
-
 CALLED = ("name", "nom", "nome", "nombre", "naam", "nume")
 """What a thing is called, where nothing else stands in the head: of an object it is the title."""
-
-_USUAL = frozenset({"home", "normal", "usual", "default", "permanent", "stamm", "habituel", "abituale", "habitual"})
-"""Words of a place where an object mostly is: used where no column tells where it is now."""
 
 
 def _mappable(field: str) -> str:
@@ -248,9 +210,11 @@ def unit_in(name: str) -> tuple[str, str | None]:
             if unit is not None:
                 return (f"{rest}{BETWEEN}{second}" if first is upper else f"{second}{BETWEEN}{rest}"), unit
         return name, None
-    rest, unit = told_unit(name)
-    if unit is not None:
-        return rest, unit
+    held = _held(path_of(name))
+    for one in filter(None, (held, name)):
+        rest, unit = told_unit(one)
+        if unit is not None and (not held or one is name or _is_measure(rest)):
+            return rest, unit
     joined = _JOINED.fullmatch(name.strip())
     if joined is not None:
         said = _names().get(plain(joined[1]))
@@ -291,13 +255,13 @@ def named(name: str) -> ColumnMeaning | None:
     if name in MAPPABLE:
         return ColumnMeaning(name, 0)
     name = _VALUE.sub("", name)
-    if any(_ELSEWHERE.intersection(plain(above).split()) for above in path_of(name)[:-1]):
+    if any(ELSEWHERE.intersection(plain(above).split()) for above in path_of(name)[:-1]):
         return None
     forms = [*_forms(name)]
     forms += [form.removeprefix(_DISPLAYED) for form in forms if form.startswith(_DISPLAYED)]
     path = path_of(name)
     above = set(map(plain, path[:-1]))
-    denoting = _says(path[-1]) == "title" or plain(path[-1]) in _DENOTING
+    denoting = _says(path[-1]) == "title" or plain(path[-1]) in DENOTING
     if len(path) > 1 and denoting and _says(path[-2]) == "gallery":
         return _names()[plain(path[-2])]  # what a place is called, and no thing: "Raum.bezeichnung"
     if plain(name) != _NUMBER or len(_OTHER.sub("", name)) == 1:
@@ -358,11 +322,11 @@ def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
         None where no long name is so near.
     """
     form = plain(unit_in(name)[0])
-    if len(form) < _LONG or _ELSEWHERE.intersection(form.split()):
+    if len(form) < _LONG or ELSEWHERE.intersection(form.split()):
         return None  # "Auteur" is no "hauteur"
     # A key is no misspelt word: "classification_id" is no classification.
     last = form.split()[-1]
-    known = [one for one in _names() if len(one) >= _LONG and (last not in _OF_KEYS or one.split()[-1] == last)]
+    known = [one for one in _names() if len(one) >= _LONG and (last not in OF_KEYS or one.split()[-1] == last)]
     # Two letters exchanged leave the same letters, and the first one: "heigth".
     near = [one for one in known if one[0] == form[0] and sorted(one) == sorted(form)]
     near += get_close_matches(form, known, n=1, cutoff=_ALMOST)
@@ -372,7 +336,7 @@ def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
 def is_code(name: str) -> bool:
     """Whether a column within others is of codes or dates: "location.code" beside "location.name"."""
     path = path_of(name)
-    return len(path) > 1 and plain(path[-1]) in _OF_CODES
+    return len(path) > 1 and plain(path[-1]) in OF_CODES
 
 
 def same_stem(word: str, table: str) -> bool:
@@ -397,6 +361,16 @@ def of_table(table: str, field: str) -> bool:
 def path_of(name: str) -> list[str]:
     """Return the names of which the name of a column is a path: "location.onView" as ["location", "onView"]."""
     return re.split(r"__|(?<=[^\W\d_]{2}):(?=[^\W\d_]{3})|\.(?=[^\W\d_]{3}|[^\W\d_]+_)", name.strip("_ ."))
+
+
+def _held(path: Sequence[str]) -> str:
+    """Return the name whose value the last of a path only holds: "height_cm" of "height_cm.value"; "" for none."""
+    return path[-2] if len(path) > 1 and plain(path[-1]).replace(" ", "") in HOLDING else ""
+
+
+def _is_measure(name: str) -> bool:
+    field = _says(name)
+    return field is not None and (field == LENGTH or bool(units_of(field)))
 
 
 def _forms(name: str) -> Iterator[str]:
@@ -438,15 +412,19 @@ def _forms(name: str) -> Iterator[str]:
             yield from _forms(path[-1])
     # "measurement_height", "ca_objects.dimensions.dimensions_height"
     words = plain(unit_in(path[-1])[0]).split()
-    about = next((at for at, word in enumerate(words) if word not in _ABOUT), 0)
+    about = next((at for at, word in enumerate(words) if word not in ABOUT), 0)
     if about:
         yield " ".join(words[about:])
+    # "measurements.height.value": the side itself, before the word for all of them.
+    held = _held(path)
+    if held and _is_measure(unit_in(held)[0]):
+        yield plain(unit_in(held)[0])
     # "ca_storage_locations.hierarchy.preferred_labels.name": of no other table of words is it the first.
     if len(path) > 2:
         yield plain(path[0])
-    if len(path) > 1 and plain(path[-1]).replace(" ", "") in _HOLDING:
-        yield plain(path[-2])
-        yield plain(_REFERENCE.sub("", _GROUPED.sub("", path[-2])))
+    if held:
+        yield plain(held)
+        yield plain(_REFERENCE.sub("", _GROUPED.sub("", held)))
     if len(path) > 1 and plain(path[-1]) == "no":
         # The number of what: "ObjectIdentity.Number".
         yield f"{plain(path[-2]).removesuffix(' identity')} no"
@@ -479,10 +457,15 @@ def _within(name: str) -> ColumnMeaning | None:
         ends = (_names().get(words[0][at:]) for at in range(1, len(words[0]) - 1))
         last = next(filter(None, ends), None)
         return None if last is None or last.internal else ColumnMeaning(last.field, _WEAK + last.rank)
-    if _FORMER & set(words) or words[-1:] == ["id"] or words[:1] == ["is"] or words[:1] == ["has"]:
+    if (
+        FORMER & set(words)
+        or words[-1:] in (["id"], ["lang"], ["language"])
+        or words[:1] == ["is"]
+        or words[:1] == ["has"]
+    ):
         # "is_gallery" is answered by yes or no.
         return None
-    usual = bool(_USUAL & set(words))
+    usual = bool(USUAL & set(words))
     for many in range(min(len(words) - 1, 3), 0, -1):
         for part in (words[-many:], words[:many]):
             found = _names().get(" ".join(part))

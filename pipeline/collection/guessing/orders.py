@@ -18,8 +18,8 @@ from pipeline.collection.dimensions.result import DimensionPart
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.names import LEGEND, unit_in
+from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.guessing.questions import asked_unit
-from pipeline.collection.guessing.source import GuessNotes
 from pipeline.collection.record import units_of
 from pipeline.collection.sources.measurements import IN_WORDS
 from pipeline.quantities import counted

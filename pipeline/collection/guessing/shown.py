@@ -10,7 +10,7 @@ from pipeline.collection.display_words import flag_of
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.fields import MOST_WORDS, tells_display
 from pipeline.collection.guessing.names import named, path_of, plain
-from pipeline.collection.guessing.source import GuessNotes
+from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.tables.held_rows import HeldAs, told_by
 
 _REMOVED = frozenset(

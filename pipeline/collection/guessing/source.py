@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import zlib
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, field
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -14,16 +14,16 @@ from typing import Any, BinaryIO, cast
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, columns_of
 from pipeline.collection.guessing.headings import has_headings
+from pipeline.collection.guessing.json_lists import objects_in
 from pipeline.collection.guessing.long_rows import long_form_of
-from pipeline.collection.guessing.names import named
-from pipeline.collection.guessing.questions import Question
+from pipeline.collection.guessing.notes import GuessNotes
+from pipeline.collection.guessing.table_heads import SNIFFED, opened_file, set_head, web_page
 from pipeline.collection.guessing.text_files import (
     LOOKED_AT,
     delimiter_of,
     encoding_of,
     first_label,
     first_lines,
-    is_sideways,
     starts_of,
     table_head,
 )
@@ -31,49 +31,27 @@ from pipeline.collection.limits import STANDARD
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.opening import open_source
-from pipeline.collection.sources.files import head_of, unpacked, unreadable
-from pipeline.collection.sources.folders import Folder
+from pipeline.collection.sources.dumps import dump_as_database
+from pipeline.collection.sources.files import head_of, unreadable
+from pipeline.collection.sources.folders import Folder, files_in
 from pipeline.collection.sources.headings import HEADING, under_headings
-from pipeline.collection.sources.json_objects import at_path, is_keyed, list_in, table_of
-from pipeline.collection.sources.json_records import files_of as json_files
-from pipeline.collection.sources.json_records import read_values
+from pipeline.collection.sources.json_objects import Json
 from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
 from pipeline.collection.sources.long_form import gathered
-from pipeline.collection.sources.registry import recognised
+from pipeline.collection.sources.registry import recognised, source_named
 from pipeline.collection.sources.rows import Row
-from pipeline.collection.sources.tables import files_of
+from pipeline.collection.sources.tables import as_database, files_of
 from pipeline.collection.sources.xml_objects import record_path
 from pipeline.collection.sources.xml_records import XML_FILES
 
 READ = 2000
 """Rows that the guess is made from."""
 
-_HEADED = ("csv", "tsv", "fixed", "xlsx")
+SOME_VALUES = 20
+"""Values of a file of JSON from which it is told where it lists objects."""
+
+_HEADED = ("csv", "tsv", "fixed", "xlsx", "html")
 """Formats of tables that people write, with headings between their rows perhaps."""
-
-MOST_NAMED = 0.2
-"""Share of the names before objects that may be those of fields (judgement)."""
-
-SNIFFED = 1 << 18
-"""Bytes from which encoding and delimiter are told."""
-
-
-@dataclass
-class GuessNotes:
-    """What is said of a guess on its way.
-
-    Attributes
-    ----------
-    choices : mapping of str to str
-        What a person has chosen.
-    doubts, questions, sure : list
-        As `guess.Guess` has them; they grow.
-    """
-
-    choices: Mapping[str, str]
-    doubts: list[str] = field(default_factory=list)
-    questions: list[Question] = field(default_factory=list)
-    sure: list[str] = field(default_factory=list)
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -149,12 +127,12 @@ def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
         if table_head(rows).known > table_head(first_lines(text, delimiter, LOOKED_AT + 60)).known:
             source |= {"format": "fixed", "starts": list(starts)}
             told.sure.append(f"{encoding}, cells below each other, from characters {', '.join(map(str, starts))} on")
-            _set_head(source, rows, told)
+            set_head(source, rows, told)
             return source
     if delimiter != "\t":
         source = {"format": "csv", "encoding": encoding, "delimiter": delimiter}
     told.sure.append(f"{encoding}, cells parted by {delimiter!r}")
-    _set_head(source, first_lines(text, delimiter, LOOKED_AT + 60), told)
+    set_head(source, first_lines(text, delimiter, LOOKED_AT + 60), told)
     return source
 
 
@@ -169,8 +147,22 @@ _SIGNS = (
 """How files begin that programs of museums leave, at which byte, and what each is."""
 
 
+_PROGRAM = re.compile(
+    # What may stand before: comments and what it takes from other files.
+    rb"(?:\xef\xbb\xbf)?\s*(?:(?://[^\n]*|/\*.{0,4000}?\*/|[\"']use \w+[\"'];?|import\s[^\n]*"
+    rb"|(?:export\s+)?(?:type|interface)\s[^}]{0,8000}\})\s*){0,60}(?:export\s+default\s*[\[{]|module\.exports\s*=|(?:export\s+)?(?:const|let|var)\s+[\w$]+)",
+    re.DOTALL,
+)
+"""How a file of JavaScript or TypeScript begins that holds values."""
+
+
 def _foreign(head: bytes) -> str:
     """Say of a file what it is and what to do with it where it is no text; "" where it may be one."""
+    if _PROGRAM.match(head[:20_000]):
+        return (
+            "a program of JavaScript and no export; save the list that it holds as JSON (node -e "
+            "'console.log(JSON.stringify(require(\"./FILE\")))'), or export the objects as CSV or Excel"
+        )
     for sign, at, what in _SIGNS:
         if head[at : at + len(sign)] == sign:
             return what
@@ -185,40 +177,22 @@ def _known(kind: str, path: Path, told: GuessNotes) -> dict[str, Any]:
     """Return how a source of a known kind is read; of plain JSON and XML, where it lists the objects."""
     if kind == "xml":
         return {"format": kind, "records": _xml_records(path, told)}
-    if kind != "json":
+    if kind == "html":
+        return web_page(path, told)
+    source = source_named(kind)
+    if not isinstance(source, Json):
         return {"format": kind}
-    file = json_files(path, deep=True)[0] if path.is_dir() else path
-    with _unpacked(file) as binary:
-        found = [value for _, value in islice(read_values(binary, file.name, exact=True), 2)]
-    where = told.choices.get("records", list_in(found[0] if found else None, alone=len(found) < 2))
-    if where:
-        told.sure.append(f"objects are listed as {where!r}")
-    source: dict[str, Any] = {"format": "json"} | ({"records": where} if where else {})
-    held: dict[str, Any] = at_path(found[0], where) if len(found) == 1 else {}
-    # Names of fields are no numbers of objects: {"height": {"value": 12, "unit": "cm"}, "width": ...}.
-    if is_keyed(held) and sum(named(key) is not None for key in held) < MOST_NAMED * len(held):
-        told.sure.append(f"each object stands behind its number, such as {next(iter(held))[:80]!r}")
-        source["layout"] = "keyed"
-    elif table_of(held) is not None:
-        told.sure.append("the names of the columns and their cells stand in lists")
-        source["layout"] = "columns"
-    return source
-
-
-@contextmanager
-def _unpacked(file: Path) -> Iterator[BinaryIO]:
-    try:
-        with file.open("rb") as packed, closing(unpacked(packed, file.name, STANDARD.bytes)) as binary:
-            yield binary
-    except OSError as problem:
-        raise unreadable(file, problem) from problem
+    file = files_in(path, source.patterns, deep=True)[0] if path.is_dir() else path
+    with opened_file(file) as binary:
+        found = [value for _, value in islice(source.values_of(binary, file.name), SOME_VALUES)]
+    return {"format": kind} | objects_in(found, told.choices.get("records"), told.sure)
 
 
 def _xml_files(path: Path) -> Iterator[tuple[str, BinaryIO]]:
     if path.is_dir():
         yield from Folder(path, XML_FILES, STANDARD.bytes).each()
         return
-    with _unpacked(path) as binary:
+    with opened_file(path) as binary:
         yield path.name, binary
 
 
@@ -236,6 +210,29 @@ def _xml_records(path: Path, told: GuessNotes) -> str:
     return where
 
 
+@contextmanager
+def laid(path: Path, source: dict[str, Any], told: GuessNotes) -> Iterator[str]:
+    """Lay the tables of a folder of CSV files, or of a dump, into a database; yield its address.
+
+    Parameters
+    ----------
+    path : Path
+        Of the folder or the dump.
+    source : dict
+        The section [source], which grows.
+    told : GuessNotes
+        What is said of it; grows.
+    """
+    if source["format"] == "tables":
+        source |= delimited_of(path, told)
+        with as_database(path, source["encoding"], source["delimiter"]) as url:
+            yield url
+        return
+    source["encoding"] = told.choices.get("encoding") or encoding_of(head_of(path, SNIFFED))
+    with dump_as_database(path, source["encoding"]) as url:
+        yield url
+
+
 def delimited_of(folder: Path, told: GuessNotes) -> dict[str, str]:
     """Return encoding and delimiter of a folder's CSV files, by the largest of them."""
     largest = max(files_of(folder), key=lambda file: file.stat().st_size)
@@ -251,38 +248,6 @@ _AGAIN = 0.1
 """Share of the object numbers of a sheet that may stand on another one too."""
 
 
-def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: GuessNotes) -> None:
-    """Say where the columns are named, where that is not the first row alone."""
-    several = next((at for at, (_, cells) in enumerate(rows) if sum(bool(cell.strip()) for cell in cells) > 1), 0)
-    if rows and "header_row" not in told.choices and is_sideways(rows[several:]):
-        source |= {"sideways": True} | ({"header_row": rows[several][0]} if several else {})
-        told.sure.append("objects stand side by side: each column is one, and the first cell of each row names a field")
-        return
-    head = table_head(rows)
-    row, many = head.row, head.rows
-    try:
-        row = int(told.choices.get("header_row", row))
-        many = int(told.choices.get("header_rows", many if row == head.row else 1))
-    except ValueError as problem:
-        raise CollectionError(
-            "--choose header_row (and header_rows): needs a number, such as header_row=4"
-        ) from problem
-    # A first row may come late only where blank lines stand above it, which are passed over anyway.
-    if row != 1 and (row != rows[0][0] if rows else True):
-        source["header_row"] = row
-        told.sure.append(f"the columns are named in row {row}, below titles")
-    if many > 1:
-        source["header_rows"] = many
-        told.sure.append(f"{many} rows name the columns together")
-    if head.known < 2 and "header_row" not in told.choices:
-        told.doubts.append(
-            f"row {row} is taken for the names of the columns, of which few are known here; --choose header_row=NUMBER "
-            "names another row"
-        )
-        options = tuple(str(number) for number, cells in rows[:10] if sum(map(bool, cells)) > 1)
-        told.questions.append(Question("header_row", "which row names the columns?", options, str(row)))
-
-
 def workbook(path: Path, sheet: str | None, told: GuessNotes) -> tuple[dict[str, Any], list[Column]]:
     """Return how a workbook is read, and the columns of its sheet: the one named, or most like an inventory."""
     from pipeline.collection.sources.xlsx import first_rows, visible_sheets
@@ -290,7 +255,7 @@ def workbook(path: Path, sheet: str | None, told: GuessNotes) -> tuple[dict[str,
     def read(title: str | None, quietly: GuessNotes) -> tuple[dict[str, Any], list[Column]]:
         source: dict[str, Any] = {"format": "xlsx"} | ({} if title is None else {"sheet": title})
         numbered = enumerate(first_rows(path, title, LOOKED_AT + 60), start=1)
-        _set_head(source, [(number, cells) for number, cells in numbered if any(map(str.strip, cells))], quietly)
+        set_head(source, [(number, cells) for number, cells in numbered if any(map(str.strip, cells))], quietly)
         return source, columns_in(path, source)
 
     there = visible_sheets(path)

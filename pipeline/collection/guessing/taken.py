@@ -10,7 +10,7 @@ from tomlkit.items import Table
 
 from pipeline.collection.display_words import says_away
 from pipeline.collection.guessing.columns import Column, joined
-from pipeline.collection.guessing.source import GuessNotes
+from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.mapping import PRESETS
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.quantities import counted

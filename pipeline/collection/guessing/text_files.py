@@ -9,11 +9,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import islice
+from statistics import median
 from unicodedata import category
 
+from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
-from pipeline.collection.guessing.names import named
+from pipeline.collection.guessing.names import named, outright
 from pipeline.collection.sources.cards import LABELLED
 from pipeline.collection.sources.delimited import cut_at
 from pipeline.collection.sources.heads import is_of_units, joined_heads
@@ -118,6 +120,9 @@ def _kana(head: bytes, encoding: str) -> float:
     return (kana - 2 * half) / len(beyond) if beyond else 0.0
 
 
+_CUT_NUMBER = re.compile(r"\d,\d")
+
+
 def delimiter_of(text: str) -> str:
     """Return what parts the cells of a text: where most rows have as many cells, and the most cells.
 
@@ -137,7 +142,9 @@ def delimiter_of(text: str) -> str:
         if not widths:
             return 0.0, 0
         width, times = Counter(widths).most_common(1)[0]
-        return (times / len(widths), width) if width > 1 else (0.0, 0)
+        # "H 23,5 cm" is cut by no comma where another sign parts the cells.
+        cut = len(_CUT_NUMBER.findall(text)) // max(1, len(widths)) if delimiter == "," else 0
+        return (times / len(widths), width - cut) if width > 1 else (0.0, 0)
 
     return max(_DELIMITERS, key=regular)
 
@@ -272,7 +279,7 @@ class Head:
     Attributes
     ----------
     row : int
-        The first row (or line) of their names.
+        The first row (or line) of their names; 0 where the first row that says anything is an object.
     rows : int
         How many rows name them together.
     known : int
@@ -298,7 +305,8 @@ def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
         Row 1 of a table that shows none.
     """
     best: Head | None = None
-    for at, (number, cells) in enumerate(rows[:LOOKED_AT]):
+    first = _first_object(rows)
+    for at, (number, cells) in enumerate(rows[:first]):
         numbers = sum(bool(NUMBER.fullmatch(cell.strip())) for cell in cells)
         if sum(bool(cell.strip()) for cell in cells) < 2 or numbers > 0.2 * len(cells):
             continue
@@ -319,12 +327,72 @@ def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
         # "cm" and "kg" below the names.
         more = at < len(rows) and rows[at][0] == best.row + best.rows and is_of_units(rows[at][1])
         return replace(best, rows=best.rows + more)
+    known = 0 if best is None else best.known
     widths = [sum(bool(cell.strip()) for cell in cells) for _, cells in rows[:LOOKED_AT]]
     widest = max(widths, default=0)
-    for (number, cells), width in zip(rows, widths, strict=False):
+    for (number, cells), width in zip(rows[:first], widths, strict=False):
         if width == widest > 1 and not _numbered(cells):
-            return Head(number, 1, 0 if best is None else best.known)
+            return Head(number, 1, known)
+    if first < len(rows) and all(width < _FULL * widths[first] for width in widths[:first]):
+        return Head(0, 1, 0)
     return Head(rows[0][0] if rows else 1, 1, 0)
+
+
+_FULL, _LIKE, _COMPARED = 0.8, 2, 40
+"""Share of the cells of the rows below that an object fills at least, how many of its cells must be written as those
+below them, and with how many rows it is compared (judgement)."""
+
+_LETTERED = re.compile(r"[^\W\d_]+")
+
+
+def _first_object(rows: Sequence[tuple[int, list[str]]]) -> int:
+    """Return the index of the first row that is an object and names no columns, for those below are written as it is.
+
+    `LOOKED_AT` where none of the first rows is one.
+    """
+    for at, (_, cells) in enumerate(rows[:LOOKED_AT]):
+        below = [row for _, row in rows[at + 1 : at + 1 + _COMPARED]]
+        filled = sum(bool(cell.strip()) for cell in cells)
+        usual = median(sum(bool(cell.strip()) for cell in row) for row in below) if len(below) >= _LIKE else 0
+        if filled < max(_FULL * usual, 2):
+            continue
+        if usual and cells not in below and _is_object(cells, below):
+            return at
+    return LOOKED_AT
+
+
+def _is_object(cells: Sequence[str], below: Sequence[Sequence[str]]) -> bool:
+    """Whether more cells are like those below them than name fields: 1921.7 above 1950.112, 12 cm above 9 cm, a room.
+
+    What comes again below is no name of a column.
+    """
+    alike = known = 0
+    for place, cell in enumerate(cell.strip() for cell in cells):
+        under = [row[place].strip() for row in below if place < len(row) and row[place].strip()]
+        if not cell or len(under) < _LIKE:
+            continue
+        if any(map(str.isdigit, cell)):
+            same = sum(map(_shape(cell).__eq__, map(_shape, under))) >= _SAME * len(under)
+            alike += same or (_measures(cell) and sum(map(_measures, under)) >= _SAME * len(under))
+        else:
+            # A name that stands twice may be merged over two rows of a head.
+            name = len(cell) <= _LONGEST and outright(cell)
+            alike += cell in under and not name
+            known += name and cell not in under
+    return alike >= max(_LIKE, known + 1)
+
+
+def _measures(text: str) -> bool:
+    return len(text) <= _LONGEST_SIZES and any(part.unit for part in parse(text).parts)
+
+
+_LONGEST_SIZES = 300
+_SAME = 0.3
+"""Share of the texts of a column that must be written as the one above them (judgement)."""
+
+
+def _shape(text: str) -> str:
+    return _LETTERED.sub("a", _DIGITS.sub("0", text.strip()))
 
 
 def _of_table(cells: Sequence[str], below: Sequence[Sequence[str]]) -> bool:

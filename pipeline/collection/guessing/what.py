@@ -117,7 +117,7 @@ def _bodily(texts: Sequence[Column], filled: set[str], title: Column) -> bool:
 
 
 def _names_things(titles: Sequence[str]) -> bool:
-    """Whether most titles are short names of things that are no pictures."""
+    """Whether most titles are short names of things that are no pictures: their first or their last word is one."""
     named = sum(map(names_thing, titles))
     return named >= _FEWEST and named >= _MOST * len(titles)
 

@@ -42,12 +42,16 @@ def place_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | N
     taken = {id(column) for column in used}
     able = [one for one in columns if id(one) not in taken and one.filled and not one.prose and named(one.name) is None]
     able = [one for one in able if len(one.distinct) <= _REPEATED * len(one.filled) and len(one.distinct) > 1]
-    best = max(able, key=_placed, default=None)
-    return best if best is not None and _placed(best) >= _PLACED else None
+    best = max(able, key=placed, default=None)
+    return best if best is not None and placed(best) >= _PLACED else None
 
 
-def _placed(column: Column) -> float:
-    return sum(map(_is_place, column.filled)) / len(column.filled)
+def placed(column: Column) -> float:
+    """Share of a column's texts that begin as the names of rooms, cases and stores do.
+
+    column : any
+    """
+    return sum(map(_is_place, column.filled)) / len(column.filled) if column.filled else 0.0
 
 
 def _is_place(text: str) -> bool:

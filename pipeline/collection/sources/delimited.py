@@ -15,7 +15,7 @@ from pydantic import Field, model_validator
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Request, SourceSettings
-from pipeline.collection.sources.heads import joined_heads
+from pipeline.collection.sources.heads import joined_heads, numbered_heads
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.sideways import turned
 from pipeline.errors import InputError
@@ -206,7 +206,8 @@ def read_delimited(
     encoding : str
         How its letters are coded.
     header_row : int
-        The line from which on the columns are named; what stands above it is left out.
+        The line from which on the columns are named; what stands above it is left out. 0: no line names them, they
+        are "column 1", "column 2" and so on.
     header_rows : int
         How many rows name them together (`heads.joined_heads`).
 
@@ -229,7 +230,10 @@ def read_delimited(
             cells, fault = read, found
             if start < header_row or not (fault[0] or any(map(str.strip, cells))):
                 continue
-            if number == 0:
+            if number == 0 and header_row == 0:
+                width, number = len(cells), 1
+                yield Row(0, start, numbered_heads(width))
+            elif number == 0:
                 if fault[0]:
                     raise CollectionError(f"{file}, line {start}: the header cannot be read: {fault[0]}; {fault[1]}")
                 heads.append(cells)
@@ -301,7 +305,11 @@ class HeadedSettings(SourceSettings):
     """How the names of columns stand in a table."""
 
     header_row: int | None = Field(
-        default=None, ge=1, le=100, description="The row (or line) of the column names, below titles; 1."
+        default=None,
+        ge=0,
+        le=100,
+        description="The row (or line) of the column names, below titles; 1. 0: no row names them, and they "
+        'are "column 1", "column 2" and so on.',
     )
     header_rows: int | None = Field(
         default=None, ge=1, le=4, description="How many rows name the columns together, as where cells are merged; 1."
@@ -315,6 +323,11 @@ class HeadedSettings(SourceSettings):
         default=False,
         description="Objects stand side by side: each column is one, and the first cell of each row names a field.",
     )
+
+    @property
+    def head(self) -> tuple[int, int]:
+        """The row of the names of the columns, and how many rows name them."""
+        return (1 if self.header_row is None else self.header_row), self.header_rows or 1
 
     def straight(self, rows: Iterator[Row], file: str) -> Iterator[Row]:
         """Return the rows of objects, turned where they stand side by side.
@@ -397,9 +410,8 @@ class Csv(FileSource):
             First the header.
         """
         own: CsvSettings | TsvSettings | FixedSettings = request.settings
-        return own.straight(
-            read_delimited(binary, file, own.between, own.encoding, own.header_row or 1, own.header_rows or 1), file
-        )
+        row, many = own.head
+        return own.straight(read_delimited(binary, file, own.between, own.encoding, row, many), file)
 
 
 class Fixed(Csv):

@@ -17,6 +17,11 @@ def is_of_units(row: Sequence[str]) -> bool:
     return bool(said) and all(unit_of(cell) for cell in said)
 
 
+def numbered_heads(many: int) -> list[str]:
+    """Return names for the columns of a table that has none: "column 1", "column 2" and so on."""
+    return [f"column {place}" for place in range(1, many + 1)]
+
+
 def joined_heads(rows: Sequence[Sequence[str]]) -> list[str]:
     """Return the names that rows of a head give together: "Size (cm)" above "H" is "Size (cm) / H".
 

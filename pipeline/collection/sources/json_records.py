@@ -96,6 +96,21 @@ class JsonSource(FileSource):
     deep: ClassVar[bool] = False
     """Whether the folders of a folder are read."""
 
+    patterns: ClassVar[tuple[str, ...]] = FILES
+    """Names of the files that count in a folder."""
+
+    def values_of(self, binary: BinaryIO, file: str) -> Iterator[tuple[int, Any]]:
+        """Yield the lines and values of a file.
+
+        Parameters
+        ----------
+        binary : binary stream
+            The file, at its beginning.
+        file : str
+            Its name in messages.
+        """
+        return read_values(binary, file, exact=self.exact)
+
     @abstractmethod
     def records(self, values: Values, file: str, request: Request) -> Iterator[Row]:
         """Yield the header and the rows.
@@ -118,11 +133,11 @@ class JsonSource(FileSource):
             with super().open(request) as opened:
                 yield opened
             return
-        folder = Folder(path, FILES, request.limits.bytes, deep=self.deep)
+        folder = Folder(path, self.patterns, request.limits.bytes, deep=self.deep)
 
         def values() -> Iterator[tuple[int, Any]]:
             for name, binary in folder.each():
-                for number, value in read_values(binary, name, exact=self.exact):
+                for number, value in self.values_of(binary, name):
                     yield line_of(name, number), value
 
         yield Opened(path.name, self.records(values, path.name, request), folder.digest)
@@ -143,7 +158,7 @@ class JsonSource(FileSource):
 
         def values() -> Iterator[tuple[int, Any]]:
             binary.seek(0)
-            return read_values(binary, file, exact=self.exact)
+            return self.values_of(binary, file)
 
         return self.records(values, file, request)
 

@@ -1,9 +1,9 @@
 """Objects as names and values within each other, from JSON or XML: their cells by the paths of their names.
 
 A name within a name is a column by its path, `MuseumLocation.DisplayCurrentLocation`; a list of texts is one text, with
-"; " between. A list whose entries each say a kind of measurement and a number, such as
-`{"type": "hoogte", "value": "115", "unit": "cm", "part": "doekmaat"}`, becomes columns `dimensions.height`,
-`dimensions.frame width`, ... with their units as written.
+"; " between; a list of pairs, `{"label": "Room", "value": "Hall"}`, is a column for each label. A list whose entries
+each say a kind of measurement and a number, such as `{"type": "hoogte", "value": "115", "unit": "cm"}`, becomes columns
+`dimensions.height`, `dimensions.frame width`, ... with their units as written.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.hand_cell import LONGEST, of_hand
 from pipeline.collection.sources.measurement_terms import kind_of, kind_within, unit_of
 from pipeline.collection.sources.measurements import FRACTION, NUMBER, OF_MEASUREMENTS, Measurements, joined
+from pipeline.collection.sources.pairs import listed, pairs_in
 from pipeline.collection.sources.rows import Row, as_text
 from pipeline.errors import InputError
 from pipeline.quantities import MASSES
@@ -54,6 +55,7 @@ _ADDRESS = re.compile(r"https?://\S+", re.ASCII)
 ADDRESS = "url"
 """Below a name with several texts, of which some are addresses: these."""
 
+_PAIR = 2
 _SPOKEN = ("lang", "language", "id")
 """Names of what may look like a unit, and is none."""
 
@@ -139,10 +141,24 @@ def flat(record: Mapping[str, Any], unit: str | None = None) -> tuple[dict[str, 
             if literal is not None:
                 put(path, as_text(literal))
                 return
+            amount = _amount_alone(value) if path else ""
+            if amount:
+                put(path, amount)
+                return
+            entries = listed(value)
+            if entries is not None:
+                take(path, entries, part)
+                return
             for name, one in value.items():
                 take(f"{path}.{name}" if path else name, one, part)
         elif isinstance(value, list) and not all(isinstance(one, _SCALARS) or one is None for one in value):
-            if not _measured(path, value, part):
+            if _measured(path, value, part):
+                return
+            pairs = pairs_in(value)
+            if pairs is not None:
+                for name, one in pairs:
+                    take(f"{path}.{name}" if path else name, one, part)
+            else:
                 for one in value:
                     take(path, one, _part_of(one) or part)
                 for kind, text in _of_kinds(value):
@@ -229,7 +245,15 @@ def _number_within(value: Mapping[str, Any]) -> str | None:
     if named is not None:
         return named
     able = [name for name in value if name not in _SPOKEN and _amount(_text(value[name]))]
-    return able[0] if len(able) == 1 and any(unit_of(_text(one)) for one in value.values()) else None
+    told = any(unit_of(_text(one)) for name, one in value.items() if name not in _SPOKEN)
+    return able[0] if len(able) == 1 and (told or (_amount(_text(value[able[0]])) or ("", ""))[1]) else None
+
+
+def _amount_alone(value: Mapping[str, Any]) -> str:
+    """Return number and unit of what holds these two and nothing else, in words that are not known: 12 cm; "" else."""
+    number = _number_within(value) if len(value) == _PAIR and not _named(value, _VALUES) else None
+    unit = next((_text(one).strip() for name, one in value.items() if name != number), "")
+    return f"{_text(value[number]).strip()} {unit}" if number is not None and unit_of(unit) else ""
 
 
 def _is_mass(value: Any) -> bool:

@@ -9,6 +9,7 @@ from pipeline.collection.sources.base import HEAD, FileSource, Source, SourceSet
 from pipeline.collection.sources.cards import Cards
 from pipeline.collection.sources.database import Database
 from pipeline.collection.sources.delimited import Csv, Fixed, Tsv
+from pipeline.collection.sources.dumps import Dump
 from pipeline.collection.sources.files import head_of
 from pipeline.collection.sources.folders import files_in
 from pipeline.collection.sources.json_objects import Json
@@ -16,9 +17,11 @@ from pipeline.collection.sources.lido import Lido
 from pipeline.collection.sources.linked_art import LinkedArt
 from pipeline.collection.sources.museumplus import MuseumPlus
 from pipeline.collection.sources.tables import Tables
+from pipeline.collection.sources.web_pages import WebPage
 from pipeline.collection.sources.xlsx import Xlsx
 from pipeline.collection.sources.xml_objects import Xml
 from pipeline.collection.sources.xml_records import XML_FILES
+from pipeline.collection.sources.yaml_objects import Yaml
 from pipeline.errors import InputError
 from pipeline.extensions import Registry
 
@@ -57,7 +60,10 @@ SOURCES: Registry[Source] = Registry(
         LinkedArt(),
         Database(),
         Tables(),
+        Dump(),
         Json(),
+        Yaml(),
+        WebPage(),
         Xml(),
     ),
     _source,

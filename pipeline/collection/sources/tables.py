@@ -6,7 +6,7 @@ They are laid into a database of SQLite of their own, which is gone afterwards, 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 from itertools import chain
@@ -158,6 +158,35 @@ def _fill(database: Connection, file: Path, encoding: str, delimiter: str, most:
             marks = ", ".join("?" * len(names))
             database.executemany(f"INSERT INTO laid VALUES ({marks})", chain([first], found))  # noqa: S608  # nosec B608
     _keyed(database, _quoted(file.stem), names)
+
+
+def lay(database: Connection, table: str, header: list[str], rows: Sequence[Sequence[str | None]]) -> None:
+    """Lay a table into a database: all columns are texts.
+
+    Parameters
+    ----------
+    database : Connection
+        Of SQLite.
+    table : str
+        Its name.
+    header : list of str
+        Names of its columns; those that come twice get a number.
+    rows : sequence of sequence of (str or None)
+        Short ones are filled up.
+
+    Raises
+    ------
+    CollectionError
+        For more columns than a table of objects has.
+    """
+    names = _distinct(header)
+    if not 0 < len(names) <= _MOST_COLUMNS:
+        raise CollectionError(f"table {table[:80]!r}: {len(names):,} columns; this is no table with one object a row")
+    database.execute(f"CREATE TEMP TABLE laid ({', '.join(f'{_quoted(name)} TEXT' for name in names)})")
+    marks = ", ".join("?" * len(names))
+    whole = ([*row, *[None] * (len(names) - len(row))] for row in rows)
+    database.executemany(f"INSERT INTO laid VALUES ({marks})", whole)  # noqa: S608  # nosec B608
+    _keyed(database, _quoted(table), names)
 
 
 def _keyed(database: Connection, table: str, names: list[str]) -> None:

@@ -21,7 +21,7 @@ from pipeline.collection.sources.base import FileSource, Name, Request
 from pipeline.collection.sources.delimited import HeadedSettings
 from pipeline.collection.sources.files import stream_of
 from pipeline.collection.sources.headings import MERGED
-from pipeline.collection.sources.heads import joined_heads
+from pipeline.collection.sources.heads import joined_heads, numbered_heads
 from pipeline.collection.sources.opendocument import OpenBook, OpenCell, OpenPage
 from pipeline.collection.sources.rows import Row, TypedNumber, as_text
 from pipeline.collection.sources.sheets import one_below_another
@@ -295,17 +295,21 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
     last, width = found.last_row, found.last_column
     filled = _Ranges(found.computed, file, width, but_first=False)
     hidden = _Ranges(found.merged, file, width, but_first=True)
-    body = header_row + header_rows
+    body = header_row + header_rows if header_row else 1
     down = {_name(there) for there in found.merged if there[1] == there[3] and there[0] >= body}
     above: dict[int, tuple[str, tuple[str, str] | None]] = {}
-    rows = page.iter_rows(min_row=header_row, max_row=last, max_col=width)
+    rows = page.iter_rows(min_row=header_row or 1, max_row=last, max_col=width)
     # Where no cell is part of others, a row whose cells hold nothing is none: some sheets hold a million of them.
     alone = not found.merged and not found.computed
     names = 0
     number = 0
     heads: list[list[str]] = []
     places: dict[int, bool] = {}
-    for line in range(header_row, last + 1):
+    if not header_row:
+        names = width
+        places = named.places(numbered_heads(width))
+        yield Row(0, 1, numbered_heads(width))
+    for line in range(header_row or 1, last + 1):
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # a date that cannot be becomes an error value, which gets a fault
@@ -488,7 +492,7 @@ class Xlsx(FileSource):
         own: XlsxSettings = request.settings
 
         def read(sheet: str | None) -> Iterator[Row]:
-            at = {"header_row": own.header_row or 1, "header_rows": own.header_rows or 1}
+            at = dict(zip(("header_row", "header_rows"), own.head, strict=True))
             rows = read_sheet(binary, file, sheet=sheet, key=request.key_column, texts=request.texts, **at)
             return own.straight(rows, file)
 

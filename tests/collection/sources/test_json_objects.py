@@ -15,7 +15,7 @@ import pytest
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guess import Guess, guess
 from pipeline.collection.reading import read_items
-from pipeline.collection.sources.json_objects import list_in
+from pipeline.collection.sources.json_shapes import list_in
 from pipeline.collection.sources.nested import flat
 from pipeline.records import Item
 

@@ -1,0 +1,191 @@
+"""What columns are by what their cells hold, where their names say nothing: names of things, materials, numbers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
+from itertools import pairwise
+
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.guessing.columns import Column, internal
+from pipeline.collection.guessing.names import named
+from pipeline.collection.guessing.within import placed
+from pipeline.collection.naming import names_thing
+from pipeline.tables import table
+from pipeline.tables.material_words import folded
+
+_SOME = 200
+"""Different texts from which it is told what a column holds."""
+
+_MOSTLY = 0.5
+"""Share of the texts of a column that must be what it is taken for (judgement)."""
+
+_FEWEST = 3
+"""Different texts that a column must have (judgement)."""
+
+_WORD = re.compile(r"[^\W\d_]+")
+_YEARS = re.compile(r"(?:c(?:a|irca)?\.? ?)?(?:1[0-9]|20)\d\d(?:\s?[-\u2013/]\s?(?:1[0-9]|20)\d\d|-\d\d-\d\d.*)?s?")
+_DATE = re.compile(r"\d{1,4}[./-]\d{1,2}[./-]\d{1,4}(?:[ T].*)?|(?:1[4-9]|20)\d\d")
+_ACCESSION = re.compile(
+    # A year and what follows it, three numbers and more, or letters before numbers.
+    r"(?:1[6-9]|20)\d\d\s?[./:-]\s?\w.*|[a-z]{0,6}[\s.]{0,2}\d+(?:[./:-][\da-z]+){2,}.*|[a-z]{1,6}[\s./:-]{0,2}\d[\w./:-]*",
+    re.IGNORECASE,
+)
+
+
+def by_values(
+    columns: Sequence[Column], found: Mapping[str, Column], chosen: Mapping[str, str]
+) -> dict[str, tuple[Column, str]]:
+    """Return the columns of things and of materials where no name of a column says which they are, and why.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    found : mapping of str to Column
+        Field -> its column.
+    chosen : mapping of str to str
+        What a person has chosen, which stays.
+
+    Returns
+    -------
+    dict of str to (Column, str)
+        Field -> its column, and what its cells are in words.
+    """
+    out: dict[str, tuple[Column, str]] = {}
+    called = {name for name in ("title", "object_name", "classification") if name in found and found[name].filled}
+    if not called and not {"object_name", "title"} & chosen.keys():
+        able = _likeliest(columns, found.values(), things)
+        if able is not None:
+            out["object_name"] = able, "most of its cells name things"
+    if not ("medium" in found and found["medium"].filled) and "medium" not in chosen:
+        able = _likeliest(columns, [*found.values(), *(one for one, _ in out.values())], materials)
+        if able is not None:
+            out["medium"] = able, "most of its cells name materials"
+    return out
+
+
+def _likeliest(columns: Sequence[Column], used: Iterable[Column], share: Callable[[Column], float]) -> Column | None:
+    taken = {id(column) for column in used}
+    able = [
+        (share(one), -one.length, one)
+        for one in columns
+        if id(one) not in taken
+        and named(one.name) is None
+        and len(one.distinct) >= _FEWEST
+        and not (one.measured or one.of_machine or one.prose or one.pictured > _MOSTLY or one.dimensional > _MOSTLY)
+        and placed(one) < _MOSTLY
+    ]
+    best = max(able, key=lambda one: one[:2], default=None)
+    return best[2] if best is not None and best[0] >= _MOSTLY else None
+
+
+def things(column: Column) -> float:
+    """Share of a column's different texts that are short names of things: "Amphora", "armchair, walnut"."""
+    some = column.distinct[:_SOME]
+    return sum(map(names_thing, some)) / len(some) if some else 0.0
+
+
+def materials(column: Column) -> float:
+    """Share of a column's different texts that name a material."""
+    some = column.distinct[:_SOME]
+    return sum(map(_is_material, some)) / len(some) if some else 0.0
+
+
+def _is_material(text: str) -> bool:
+    words, signs = _materials()
+    return not words.isdisjoint(_WORD.findall(folded(text))) or any(one in text for one in signs)
+
+
+@cache
+def _materials() -> tuple[frozenset[str], tuple[str, ...]]:
+    """Return the words of materials, and those in signs, between which there are no blanks."""
+    entries = {folded(word) for row in table("materials") for word in row["words"].split("|") if word}
+    signs = tuple(one for one in entries if "\u3040" <= one[0] <= "\ud7af")
+    return frozenset(one for one in entries if one not in signs and " " not in one), signs
+
+
+def accessions(column: Column) -> float:
+    """Share of a column's texts that are written as museums number their objects: 1922.9, M 12/3, 83.AQ.377.542.
+
+    Whole numbers alone may be those of a database, and dates are none.
+    """
+    some = column.distinct[:_SOME]
+    return sum(_is_accession(text) for text in some) / len(some) if some else 0.0
+
+
+def _is_accession(text: str) -> bool:
+    return _ACCESSION.fullmatch(text) is not None and (_DATE.fullmatch(text) is None)
+
+
+def _dated(column: Column) -> float:
+    """Share of a column's texts that are years or dates, and so number no object."""
+    some = column.distinct[:_SOME]
+    return sum(_YEARS.fullmatch(text) is not None for text in some) / len(some) if some else 0.0
+
+
+def repeated_in(column: Column) -> float:
+    """Share of a column's cells that repeat another, or are empty.
+
+    column : any
+    """
+    return 1.0 - len(column.distinct) / len(column.values) if column.values else 1.0
+
+
+def second_number(columns: Sequence[Column], found: Mapping[str, Column]) -> Column | None:
+    """Return a column of other numbers, where that of the objects' numbers says of several that they have none.
+
+    Whole numbers are rather those of a database than codes of another kind.
+    """
+    fields = {id(column) for column in found.values()}
+    able = [column for column in columns if id(column) not in fields and column.numbering]
+    alone = [column for column in able if len(column.distinct) == len(column.values)]
+    whole = [column for column in alone if all(map(str.isdecimal, column.filled))]
+    return next(iter(whole or alone), None) if found["object_number"].blanks else None
+
+
+def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column]) -> Column:
+    """Return the column that tells rows apart: what may be a number first, prose and what is another field last."""
+    able = [column for column in columns if column.filled and len(set(column.filled)) == len(column.values)]
+    if able:
+        fields = {id(column) for column in found.values()}
+
+        def unlike(one: Column) -> tuple[bool, bool, bool, float, float]:
+            sentences = one.prose and sum(" " in text for text in one.filled) > _MOSTLY * len(one.filled)
+            dated = _dated(one) >= _MOSTLY
+            number = one.numbering and not dated
+            return (
+                sentences or dated,
+                id(one) in fields,
+                not number,
+                -round(accessions(one), 1),
+                0 if number else one.length,
+            )
+
+        return min(able, key=unlike)
+    there = ", ".join(repr(column.name) for column in columns[:30])
+    raise CollectionError(
+        f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "
+        "object_number=COLUMN; or where the names of the columns stand: --choose header_row=NUMBER"
+    )
+
+
+def perhaps_sizes(columns: Sequence[Column]) -> str:
+    """Return in words which columns hold numbers as sizes are, where no name of theirs says so; "" for none.
+
+    columns : those that no field takes
+    """
+    able = [one.name for one in columns if one.numeric and _varied(one) and not internal(one)]
+    return f"; {', '.join(map(repr, able[:10]))} may hold sizes, for they are of different numbers" if able else ""
+
+
+def _varied(column: Column) -> bool:
+    """Whether numbers are neither years nor such as count the rows, and several of them come again or have decimals."""
+    numbers = [float(text.replace(",", ".")) for text in column.numbers[:_SOME]]
+    years = sum(_FIRST_YEAR <= number <= _LAST_YEAR and number.is_integer() for number in numbers)
+    counted = all(after - before == 1 for before, after in pairwise(numbers))
+    return len(set(numbers)) >= _FEWEST and not counted and years < _MOSTLY * len(numbers) and min(numbers) >= 0
+
+
+_FIRST_YEAR, _LAST_YEAR = 1400, 2100
