@@ -9,6 +9,7 @@ from pipeline.motions.baseline import remove_pre_event_mean, two_segment_baselin
 from pipeline.motions.doubts import MAY_HOLD
 from pipeline.motions.intensity import integrate, strong_part
 from pipeline.motions.onset import first_arrival
+from pipeline.motions.plausibility import PGD_MOST
 from pipeline.quantities import Array
 from pipeline.records import Motion
 
@@ -85,7 +86,9 @@ def fling_step(recorded: Motion, filtered: Motion, pre_event: float | None = Non
     row = int(np.argmax(np.abs(v[:2]).max(axis=1)))
     pgv = float(np.abs(v[row]).max())
     step, wander = _remaining(u[row], int(shaken[1] / recorded.dt))
-    if pgv < max(LEAST_PGV, PGV_RATIO * without) or abs(step) < LEAST_STEP or wander > FLAT * abs(step):
+    if pgv < max(LEAST_PGV, PGV_RATIO * without) or not LEAST_STEP <= abs(step) <= PGD_MOST:
+        return None
+    if wander > FLAT * abs(step):
         return None
     return (
         f"{MAY_HOLD}a permanent displacement (fling step), or its sensor tilted: with its level before the event and a "

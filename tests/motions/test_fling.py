@@ -104,3 +104,11 @@ def test_a_sensor_that_tilted_is_told_and_no_velocity_of_its_level(seed, tilt):
 def test_an_offset_of_the_whole_record_is_no_tilt():
     motion, _ = recorded(1)
     assert fling_step(Motion(DT, motion.acceleration + 3.0), filtered(motion)) is None
+
+
+def test_a_step_that_no_fault_makes_is_none():
+    """A hundred times the size: 120 m, of shaking without a tilt."""
+    motion, _ = recorded(3, 1.2, 4.0)
+    huge = Motion(DT, 100.0 * motion.acceleration)
+    assert fling_step(motion, filtered(motion)) is not None
+    assert fling_step(huge, filtered(huge)) is None
