@@ -23,7 +23,13 @@ NO_RECORD = "; it may be a spectrum or an envelope, where it is no push of a tes
 """Ends what is said of numbers that never cross zero."""
 
 ALIKE = ": one was given twice, or it is no record of two directions"
-"""Ends what is said of a record whose horizontals are the same numbers."""
+"""Ends what is said of a record of which two components are the same numbers."""
+
+ODD_ONE = ", as hardly any earthquake makes them: one of them may be in another unit, or of another sensor or record"
+"""Ends what is said of a record whose components differ too much in size."""
+
+TOO_QUICK = ": so little for its acceleration as an earthquake seldom has; look at its time step and its unit"
+"""Ends what is said of a record whose PGV is small for its PGA."""
 
 SENSITIVITY_ALONE = (
     ", which has no response: what the instrument does to the highest and lowest frequencies stays "
@@ -66,7 +72,7 @@ def doubts(steps: Sequence[str]) -> tuple[str, ...]:
             step.startswith(MAY_HOLD)
             or ALL_USED in step
             or DRIFTS in step
-            or step.endswith((NO_RECORD, ALIKE, TOO_COARSE))
+            or step.endswith((NO_RECORD, ALIKE, ODD_ONE, TOO_QUICK, TOO_COARSE))
         ):
             found.append(step)
         elif FACTOR in step:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.motions.doubts import TOO_QUICK
 from pipeline.motions.errors import Judgement
 from pipeline.motions.intensity import integrate, measures
 from pipeline.quantities import Array, G
@@ -22,6 +23,9 @@ PGV = (0.001, 4.0)
 
 VELOCITY_TO_ACCELERATION = (0.005, 1.0)
 """s: PGV over PGA that passes.  Records have 0.02 to 0.4, near-fault ones up to 0.75 (judgement)."""
+
+QUICK = 0.015
+"""s: PGV over PGA below which it is doubted aloud, though it passes (judgement): a time step ten times too small."""
 
 LONGEST_PERIOD = 2.5
 """s: mean period (Rathje et al. 1998) that passes alone; longer with LONG_RATIO, a velocity was taken for acceleration.
@@ -139,6 +143,24 @@ def doubt_motion(motion: Motion, *, velocity: Array | None, processed: bool) -> 
         "this looks like velocity or displacement called acceleration, or a wrong time step: mend the unit "
         "or the response",
     )
+
+
+def quick(motion: Motion) -> str | None:
+    """Say that a motion has too little velocity for its acceleration; None where it has enough.
+
+    Parameters
+    ----------
+    motion : Motion
+        As of `doubt_motion`, which lets it pass.
+
+    Returns
+    -------
+    str or None
+    """
+    peaks = measures(motion)
+    if not 0.0 < peaks["pgv"] < QUICK * peaks["pga"]:
+        return None
+    return f"its PGV over its PGA is {peaks['pgv'] / peaks['pga']:.3g} s, below {QUICK:g} s{TOO_QUICK}"
 
 
 def mean_period(motion: Motion) -> float:

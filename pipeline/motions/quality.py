@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 
-from pipeline.motions.doubts import ALIKE
+from pipeline.motions.doubts import ALIKE, ODD_ONE
 from pipeline.motions.plateaus import held
 from pipeline.quantities import Array
 
@@ -39,6 +41,14 @@ SPIKES, SPIKE_APART = 5, 3
 
 TWINS = 1e-5
 """How far the correlation of two components may be below one for them to be the same numbers, printed twice."""
+
+UNEVEN, LARGEST_VERTICAL, LEAST_VERTICAL = 5.0, 4.0, 1.0 / 15.0
+"""Ratios of r.m.s. accelerations beyond which a component is doubted (judgement): of the horizontals, and of the
+vertical to the larger of them.
+
+Of 26 recordings the horizontals differ by up to 2.7, and the vertical has 0.26 to 2.0 of the larger; one of instrument
+pulses has 10.7.  A component in g among those in m/s2 makes 9.8.
+"""
 
 LONG_RUN = 5
 """Samples in a row whose edges may take two samples, because the limit may lie just above the first one outside.
@@ -149,7 +159,7 @@ def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
 
 
 def alike(data: Array) -> str | None:
-    """Say that both horizontals of a record are one and the same but for a factor; None where they are not.
+    """Say that two components of a record are one and the same but for a factor; None where they are not.
 
     Parameters
     ----------
@@ -161,12 +171,39 @@ def alike(data: Array) -> str | None:
     str or None
         What is so.
     """
-    x, y = data[:2] - data[:2].mean(axis=1, keepdims=True)
-    size = float(np.sqrt((x @ x) * (y @ y)))
-    if size == 0.0 or abs(float(x @ y)) < (1.0 - TWINS) * size:
+    rows = data - data.mean(axis=1, keepdims=True)
+    for a, b in combinations(range(len(rows)), 2):
+        size = float(np.sqrt((rows[a] @ rows[a]) * (rows[b] @ rows[b])))
+        if size > 0.0 and abs(float(rows[a] @ rows[b])) >= (1.0 - TWINS) * size:
+            factor = float(rows[a] @ rows[b]) / float(rows[a] @ rows[a])
+            return f"two components are the same numbers, {'xyz'[b]} {factor:.4g} times {'xyz'[a]}{ALIKE}"
+    return None
+
+
+def uneven(data: Array) -> str | None:
+    """Say that one component of a record is far stronger or weaker than the others; None where none is.
+
+    Parameters
+    ----------
+    data : array, shape (3, n)
+        In m/s2, the horizontals first; a component that is zero throughout is not looked at.
+
+    Returns
+    -------
+    str or None
+        What is so.
+    """
+    x, y, z = np.sqrt(((data - np.median(data, axis=1, keepdims=True)) ** 2).mean(axis=1)).tolist()
+    larger = max(x, y)
+    if min(x, y) > 0.0 and larger > UNEVEN * min(x, y):
+        strong, weak, ratio = "xy"[y > x], "xy"[x > y], larger / min(x, y)
+    elif z > 0.0 and larger > 0.0 and not LEAST_VERTICAL <= z / larger <= LARGEST_VERTICAL:
+        strong, weak, ratio = "xy"[y > x], "z", larger / z
+        if z > larger:
+            strong, weak, ratio = weak, strong, z / larger
+    else:
         return None
-    factor = float(x @ y) / float(x @ x)
-    return f"both horizontal components are the same numbers, y {factor:.4g} times x{ALIKE}"
+    return f"{strong} is {ratio:.3g} times as strong as {weak}{ODD_ONE}"
 
 
 def one_sided(row: Array) -> str | None:

@@ -35,7 +35,7 @@ from pipeline.motions.parts import (
     zero_of,
 )
 from pipeline.motions.plateaus import full_scale
-from pipeline.motions.quality import alike, clipped, one_sided
+from pipeline.motions.quality import alike, clipped, one_sided, uneven
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL, Component, Record
 from pipeline.motions.responses import load_obspy, read_inventory
 from pipeline.motions.several import tell_earthquakes, tell_renewals
@@ -191,7 +191,7 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     check_together(rows, inventory, record.accept, steps)
     processed = _processed(folder, record.name, record.processed, [trace for _, trace, _ in rows.values()], steps)
     data, dt, first = aligned(rows, steps)
-    steps += [said for said in (alike(data),) if said]
+    steps += [said for said in (alike(data), uneven(data)) if said]
     velocity = None
     if processed and velocities.keys() == rows.keys():
         velocity = np.zeros_like(data)

@@ -28,7 +28,7 @@ from pipeline.motions.manifest import (
     load_manifest,
     manifest_file,
 )
-from pipeline.motions.plausibility import doubt_motion, doubt_recorded
+from pipeline.motions.plausibility import doubt_motion, doubt_recorded, quick
 from pipeline.motions.processing import Processed, cut, process
 from pipeline.motions.pulses import PERIODS, shahi_baker_pulse
 from pipeline.motions.quality import cut_off
@@ -483,6 +483,7 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
     velocity = None if done.velocity is None else done.velocity / done.factor
     if doubt := doubt_motion(unscaled, velocity=velocity, processed=recording.processed):
         ask(doubt.judgement, doubt.wrong, doubt.remedy)
+    steps += filter(None, (quick(unscaled),))
     return replace(done, motion=done.motion.called(record.name, *steps)) if steps else done
 
 

@@ -84,3 +84,31 @@ def test_what_is_advised_keeps_the_step():
     kept = two_segment_baseline(remove_pre_event_mean(motion, QUIET))
     assert pgv(kept) == pytest.approx(pgv(truth), rel=0.03)
     assert integrate(kept)[1][0, -1] == pytest.approx(1.2, rel=0.1)
+
+
+@pytest.mark.parametrize("tilt", [0.05, 0.1, 0.2])
+@pytest.mark.parametrize("seed", range(2))
+def test_a_sensor_that_tilted_is_told_and_no_velocity_of_its_level(seed, tilt):
+    """By truth: what two segments make of it is 1.25 to 3.5 times too fast, which was told as a fling step."""
+    motion, truth = recorded(seed, tilt=tilt)
+    wrong = two_segment_baseline(remove_pre_event_mean(motion, QUIET))
+    assert pgv(wrong) > 1.25 * pgv(truth)
+    said = fling_step(motion, filtered(motion))
+    assert said is not None
+    assert "a sensor that tilted or was knocked" in said
+    assert "cm/s" not in said
+    before, after = (float(one) for one in re.findall(r"(-?[\d.]+) m/s2", said))
+    assert after - before == pytest.approx(tilt, rel=0.05)
+
+
+def test_an_offset_of_the_whole_record_is_no_tilt():
+    motion, _ = recorded(1)
+    assert fling_step(Motion(DT, motion.acceleration + 3.0), filtered(motion)) is None
+
+
+def test_a_step_that_no_fault_makes_is_none():
+    """A hundred times the size: 120 m, of shaking without a tilt."""
+    motion, _ = recorded(3, 1.2, 4.0)
+    huge = Motion(DT, 100.0 * motion.acceleration)
+    assert fling_step(motion, filtered(motion)) is not None
+    assert fling_step(huge, filtered(huge)) is None

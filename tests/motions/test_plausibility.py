@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from pipeline.motions import MotionError, read_motion
+from pipeline.motions.doubts import doubts
 from pipeline.motions.intensity import measures
-from pipeline.motions.plausibility import doubt_motion, mean_period
+from pipeline.motions.plausibility import doubt_motion, mean_period, quick
 from pipeline.quantities import G
 from pipeline.records import Motion
 
@@ -79,3 +80,14 @@ def test_the_end_is_looked_at_before_the_filter(three, write_manifest):
     """A raw record that ends amid its shaking is refused for that, whatever corner it would have needed."""
     three(*(a * tone()[:2000] for a in (1.0, 2.0, 0.5)))
     asked(write_manifest(processed=False), "cut_off", "ends during strong shaking")
+
+
+@pytest.mark.parametrize(("frequency", "doubted"), [(8.0, False), (10.0, False), (11.5, True), (16.0, True)])
+def test_a_time_step_ten_times_too_small_is_doubted(frequency, doubted):
+    """A tone has a PGV of its PGA over its circular frequency: 0.0199, 0.0159, 0.0138 and 0.0099 s."""
+    t = 0.001 * np.arange(20000)
+    row = np.cos(2.0 * np.pi * frequency * t) * np.sin(np.pi * t / t[-1]) ** 2
+    said = quick(Motion(0.001, [row, 0.5 * row, 0.3 * row]))
+    assert (said is not None) == doubted
+    assert said is None or float(said.split()[6]) == pytest.approx(1.0 / (2.0 * np.pi * frequency), rel=0.005)
+    assert said is None or doubts([said]) == (said,)

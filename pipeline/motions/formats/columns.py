@@ -376,9 +376,10 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     chosen = _accelerations(lines, block)
     dt = _step(lines, start, block)
     count, width = block.data.shape
-    if head.count is not None and head.count != count:
-        wrong = f"announces {head.count} samples, and {count} are there"
-        raise lines.error(head.at["count"], wrong, "it is cut off or damaged: fetch it again")
+    if head.count is not None:
+        trace_headers.said_count(lines, head.at["count"], head.count, count)
+    if head.kind == "acceleration":
+        trace_headers.said_unit(lines, head.at["unit"], head.unit, [one.unit for one in block.columns])
     if not block.columns and width > _BARE - 1:
         remedy = "name them: kouros motions convert FILE --columns time,ns,ew,ud --unit g --out FOLDER"
         raise lines.error(start, f"nothing names its {width} columns", remedy)
@@ -478,9 +479,8 @@ def _step(lines: Lines, start: int, block: _Block) -> float:
         raise lines.error(
             start, "its first column counts the rows, and nothing says the time step", f"say it: {_CONVERT}"
         )
-    if step is not None and abs(dt - step) > 2e-3 * dt:
-        wrong = f"says a step of {step:g} s, and the times have one of {dt:g} s"
-        raise lines.error(head.at["step"], wrong, "find out which is right, and mend the other")
+    if step is not None:
+        trace_headers.said_step(lines, head.at["step"], step, dt)
     return blocks.step(lines, start, dt)
 
 

@@ -70,6 +70,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     lines = _with_points(_unquoted(lines, top + 1), top + 1, _separator(row))
     table = _numbers(lines, top + 1, _separator(row), len(cells))
     dt = _step(lines, top + 1, _TIME[cells[0][1]] * table[:, 0], _TIME[cells[0][1]])
+    _agree(lines, top, dt, table[:, 1:].T, [unit for _, unit in cells[1:]])
     timed = _BARE.match(record_text.printable(_parts(row)[0])) is None
     processed, network, station, when = _facts(lines, keys)
     traces = []
@@ -203,6 +204,20 @@ def _step(lines: Lines, start: int, times: Array, unit: float) -> float:
         wrong = f"time {times[worst]:g} s is off the even step of {dt:g} s"
         raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
     return dt
+
+
+def _agree(lines: Lines, top: int, dt: float, data: Array, units: list[str]) -> None:
+    """Hold what the lines before the names say of step, unit, number and peak against names and numbers."""
+    head = labels.read_head(lines, top, 0, None)
+    if head.step is not None:
+        trace_headers.said_step(lines, head.at["step"], head.step, dt)
+    if head.count is not None:
+        trace_headers.said_count(lines, head.at["count"], head.count, data.shape[1])
+    if head.kind == "acceleration":
+        trace_headers.said_unit(lines, head.at["unit"], head.unit, units)
+    if head.peak is not None:
+        in_si = np.array([FACTORS[unit] for unit in units])[:, None] * data
+        trace_headers.said_peak(lines, head.at["peak"], *head.peak, in_si, 1.0)
 
 
 def _first(line: bytes) -> bytes:

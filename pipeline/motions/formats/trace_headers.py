@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,9 @@ from pipeline.quantities import Array, G
 FACTORS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "in/s2": 0.0254, "g": G, "mg": 0.001 * G}
 FACTORS |= {"g/10": 0.1 * G, "%g": 0.01 * G, "ft/s2": 0.3048, "mgal": 1e-5, "nm/s2": 1e-9}
 """Metres per second squared in one of each unit of acceleration."""
+
+STEP_TOLERANCE = 2e-3
+"""How far a printed time step may be from that of the times, of itself: 1/128 s is printed as 0.0078."""
 
 PEAK_TOLERANCE = 0.1
 """How far a printed peak may be from that of the samples, of itself: what filters, rounding and trends removed between
@@ -141,6 +144,28 @@ def said_peak(lines: Lines, index: int, said: float, digit: float, data: Array, 
         found = float(as_they_are.max())
         wrong = f"says a peak acceleration of {said:.4g} m/s2, and the samples have {found:.4g} m/s2"
         raise lines.error(index, wrong, "it is damaged, or of another unit or record: fetch it again")
+
+
+def said_step(lines: Lines, index: int, said: float, dt: float) -> None:
+    """Refuse a record whose header says another time step [s] than its column of times has."""
+    if abs(dt - said) > STEP_TOLERANCE * dt:
+        wrong = f"says a step of {said:g} s, and the times have one of {dt:g} s"
+        raise lines.error(index, wrong, "find out which is right, and mend the other")
+
+
+def said_count(lines: Lines, index: int, said: int, count: int) -> None:
+    """Refuse a record whose header announces another number of samples than it has."""
+    if said != count:
+        wrong = f"announces {said} samples, and {count} are there"
+        raise lines.error(index, wrong, "it is cut off or damaged: fetch it again")
+
+
+def said_unit(lines: Lines, index: int, said: str, units: Iterable[str]) -> None:
+    """Refuse a record whose header says a unit of acceleration that none of its columns has."""
+    other = {unit for unit in units if unit in FACTORS}
+    if said in FACTORS and other and FACTORS[said] not in {FACTORS[unit] for unit in other}:
+        wrong = f"says {said} for the unit, and the names of the columns say {', '.join(sorted(other))}"
+        raise lines.error(index, wrong, "find out which is right, and mend the other")
 
 
 def seed_orientation(channel: str) -> Orientation:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import copy
 import io
+import re
 from importlib.metadata import entry_points
 
 import numpy as np
@@ -14,6 +15,7 @@ import obspy
 import pytest
 
 from pipeline.motions.formats import trace_headers
+from pipeline.motions.formats.record_text import FormatError
 from tests.motions.formats import specimens as hand
 from tests.motions.formats.every import SPECIMENS
 from tests.motions.formats.specimens import DT, SHAPE, tone
@@ -223,3 +225,26 @@ def test_headers_compare_and_copy(read):
     other = copy.deepcopy(stream)
     np.asarray(other[0].stats.kouros.velocity.values)[0] += 1.0
     assert stream != other
+
+
+@pytest.mark.parametrize(
+    ("comment", "words"),
+    [
+        ("# dt = 0.005 s", "line 1: says a step of 0.005 s, and the times have one of 0.01 s"),
+        ("# Sampling frequency (Hz): 200", "line 1: says a step of 0.005 s, and the times have one of 0.01 s"),
+        ("# number of samples: 61", "line 1: announces 61 samples, and 60 are there"),
+        ("# PGA: 981 cm/s2", ""),
+        ("# PGA: 1.5 g", "line 1: says a peak acceleration of 14.71 m/s2"),
+        ("# units: mg", "line 1: says mg for the unit, and the names of the columns say"),
+        ("# dt = 0.01 s; number of samples: 60; PGA: 1 g", ""),
+        ("# units: g", ""),
+    ],
+)
+def test_comments_of_a_csv_are_held_against_its_numbers(read, comment, words):
+    """They were passed over: a step of twice the times' halves every velocity."""
+    content = hand.csv(comments=comment)
+    if words:
+        with pytest.raises(FormatError, match=re.escape(words)):
+            read(content)
+    else:
+        assert read(content)[0].stats.delta == 0.01
