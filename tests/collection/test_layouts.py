@@ -168,6 +168,14 @@ def test_objects_in_other_texts_are_read(name: str, tmp_path: Path) -> None:
         ("d.sql", "CREATE TABLE a (x int, y int);\nINSERT INTO a VALUES (1, 2), (3);\n", "1 values for 2 columns"),
         ("e.sql", "-- a dump\nCREATE TABLE a (x int);\n", "without a row"),
         ("f.html", "<!DOCTYPE html><html><body><p>No list.</p></body></html>", "without a table"),
+        ("h.html", "<table><tr><td>" * 3000 + "x", "without a table"),
+        (
+            "i.html",
+            "<table><tr><td rowspan=100000 colspan=100000>x</td></tr>" + "<tr><td>1<td colspan=9999999>2</tr>" * 200,
+            "no column looks like object numbers",
+        ),
+        ("j.sql", "INSERT INTO t VALUES (1,'" + "x" * 100_000, "never closed"),
+        ("k.sql", "/*" * 100_000, "without a row"),
         ("g.js", "// the museum\nexport const objects = [{ number: '1' }];\n", "a program of JavaScript"),
     ],
 )

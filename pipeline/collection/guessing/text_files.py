@@ -333,7 +333,7 @@ def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
     for (number, cells), width in zip(rows[:first], widths, strict=False):
         if width == widest > 1 and not _numbered(cells):
             return Head(number, 1, known)
-    if first < len(rows) and all(width < _FULL * widths[first] for width in widths[:first]):
+    if first < len(widths) and all(width < _FULL * widths[first] for width in widths[:first]):
         return Head(0, 1, 0)
     return Head(rows[0][0] if rows else 1, 1, 0)
 
