@@ -83,12 +83,16 @@ class WebPage(FileSource):
         tables = page_tables(binary, file, own.encoding)
         if len(tables) < own.table:
             raise CollectionError(f"{file}: has {len(tables)} tables; say in the mapping which, [source] table")
-        return own.straight(_rows(tables[own.table - 1], own), file)
+        table = tables[own.table - 1]
+        width = max(len(cells) for _, cells in table)
+        if width * len(table) > MOST_CELLS:
+            # One long row makes all others as long.
+            raise CollectionError(f"{file}: {len(table):,} rows of up to {width:,} cells; export the list as CSV")
+        return own.straight(_rows(table, width, own), file)
 
 
-def _rows(table: list[tuple[int, list[str]]], own: PageSettings) -> Iterator[Row]:
+def _rows(table: list[tuple[int, list[str]]], width: int, own: PageSettings) -> Iterator[Row]:
     first, many = own.head
-    width = max((len(cells) for _, cells in table), default=0)
     whole = [(line, [*cells, *[""] * (width - len(cells))]) for line, cells in table]
     heads = [cells for _, cells in whole[first - 1 : first - 1 + many]] if first else []
     yield Row(0, 1, numbered_heads(width) if not first else joined_heads(heads) if many > 1 else (heads or [[]])[0])
