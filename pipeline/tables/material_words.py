@@ -40,6 +40,11 @@ _BESIDE = frozenset(
 )
 """Words, folded, that stand beside a material and say how it was worked, which colour it has, or that there are two."""
 
+_SHORT = 3
+"""Letters up to which a word without its accents is rather another one."""
+_OTHERWISE = frozenset({"baker", "leter", "vang"})
+"""Longer ones that are names, or other words."""
+
 
 def folded(text: str) -> str:
     """Return a text without capitals and accents."""
@@ -48,12 +53,16 @@ def folded(text: str) -> str:
 
 @cache
 def material_words() -> dict[str, str]:
-    """Return the words for materials, folded, with the row of materials.csv of each; phrases are left out."""
+    """Return the words for materials, folded, with the row of materials.csv of each.
+
+    Phrases are left out, and what without its accents is another word or a name: sứ, lụa, āda, bakër.
+    """
     return {
-        folded(word): row["material"]
+        plain: row["material"]
         for row in table("materials")
         for word in row["words"].split("|")
         if " " not in word
+        and ((plain := folded(word)) == word.casefold() or (len(plain) > _SHORT and plain not in _OTHERWISE))
     }
 
 

@@ -12,8 +12,7 @@ from pipeline.collection.guessing.columns import Column, internal
 from pipeline.collection.guessing.names import named
 from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
-from pipeline.tables import table
-from pipeline.tables.material_words import folded
+from pipeline.tables.material_words import folded, material_words
 
 _SOME = 200
 """Different texts from which it is told what a column holds."""
@@ -101,9 +100,8 @@ def _is_material(text: str) -> bool:
 @cache
 def _materials() -> tuple[frozenset[str], tuple[str, ...]]:
     """Return the words of materials, and those in signs, between which there are no blanks."""
-    entries = {folded(word) for row in table("materials") for word in row["words"].split("|") if word}
-    signs = tuple(one for one in entries if "\u3040" <= one[0] <= "\ud7af")
-    return frozenset(one for one in entries if one not in signs and " " not in one), signs
+    signs = tuple(one for one in material_words() if "\u3040" <= one[0] <= "\ud7af")
+    return frozenset(material_words()) - frozenset(signs), signs
 
 
 def accessions(column: Column) -> float:
