@@ -61,7 +61,8 @@ def material_words() -> dict[str, str]:
         plain: row["material"]
         for row in table("materials")
         for word in row["words"].split("|")
-        if " " not in word
+        if word
+        and " " not in word
         and ((plain := folded(word)) == word.casefold() or (len(plain) > _SHORT and plain not in _OTHERWISE))
     }
 
