@@ -38,6 +38,16 @@ CHATEAU = """Inv.,Désignation,Salle,Emplacement,H,L,P
 5,Lustre,Salon,plafond,140,100,
 6,Bénitier,Chapelle,mur,32,,
 """
+HACIENDA = """Núm;Objeto;Material;Alto;Ancho;Fondo;Estancia;Ubicación
+1;Reloj de mesa;bronce;40;25;12;Sala;sobre la chimenea
+2;Jarrón;talavera;55;28;28;Comedor;encima del trinchador
+3;Espejo;madera dorada;140;90;;Sala;arriba de la consola
+4;Ropero;caoba;210;130;55;Recámara;esquina
+5;San José;madera policromada;95;35;30;Capilla;nicho lateral
+6;Óleo Virgen de Guadalupe;óleo/tela;110;80;;Capilla;muro sur
+7;Metate;piedra;25;35;45;Cocina;piso
+8;Arcón;encino;60;120;55;Recámara;a los pies de la cama
+"""
 KONAK = """Sıra,Envanter No,Eser Adı,En,Boy,Oda,Konum
 1,K-1,Ayna,90,160,Salon,duvarda
 2,K-2,Hat levhası,60,85,Selamlık,duvarda
@@ -90,6 +100,9 @@ def stands(item: Item) -> str:
         (CHATEAU, ["Salon", "Salon", "Vestibule", "Chambre", "Salon", "Chapelle"],
          ["freestanding shelf", "freestanding pedestal", "freestanding pedestal", "freestanding floor",
           "suspended rail", "hung wall"]),
+        (HACIENDA, ["Sala", "Comedor", "Sala", "Recámara", "Capilla", "Capilla", "Cocina", "Recámara"],
+         ["freestanding shelf", "freestanding pedestal", "hung wall", "freestanding floor", "freestanding floor",
+          "hung wall", "freestanding floor", "freestanding floor"]),
         (KONAK, ["Salon", "Selamlık", "Selamlık", "Mutfak"],
          ["hung wall", "hung wall", "hung wall", "freestanding pedestal"]),
         (ARCHONTIKO, ["Σαλόνι", "Σαλόνι", "Τραπεζαρία", "Υπνοδωμάτιο", "Τραπεζαρία"],
@@ -98,13 +111,30 @@ def stands(item: Item) -> str:
          ["freestanding pedestal", "freestanding showcase", "freestanding pedestal", "suspended rail",
           "freestanding showcase"]),
     ],
-    ids=["house", "villa", "chateau", "konak", "archontiko", "nepal"],
+    ids=["house", "villa", "chateau", "hacienda", "konak", "archontiko", "nepal"],
 )  # fmt: skip
 def test_the_room_and_where_in_it(tmp_path: Path, rows: str, rooms: list[str], held: list[str]) -> None:
     """What a person reads in these rows: written down from the lists, not from what Kouros made of them."""
     _, items = found_in(tmp_path, rows)
     assert [item.gallery for item in items] == rooms
     assert [stands(item) for item in items] == held
+
+
+@pytest.mark.parametrize(
+    ("title", "medium", "expected"),
+    [
+        ("San José con el Niño", "madera policromada", "statue"),
+        ("Virgin and Child", "wood and gesso", "statue"),
+        ("Standing Vishnu", "Black stone", "statue"),
+        ("Saint Jerome", "oil on wood", "framed"),
+        ("Santa Rosa de Lima", "óleo sobre tela", "framed"),
+        ("St. George and the Dragon", "engraving", "framed"),
+        ("Santa Fe model train", "metal", "model"),
+        ("San Francisco bay quilt", "cotton", "relief"),
+    ],
+)
+def test_holy_figures_are_carved_and_their_pictures_are_not(title: str, medium: str, expected: str) -> None:
+    assert classify(Item("1", "Chapel", title=title, medium=medium, height_m=0.9, width_m=0.9)).object_class == expected
 
 
 def test_sizes_of_a_side_that_hold_more(tmp_path: Path) -> None:

@@ -24,6 +24,8 @@ _MAY_TELL = ("support", "displayed", "medium", "case", "gallery")
 """Fields whose columns may hold how objects are held: "Tipo de suporte" is what a picture is on, or a plinth."""
 _WAYS = 0.5
 """Share of its texts from which a column of another name is one of how objects are held (judgement)."""
+_SOME_WAYS, _SPOTS = 0.2, 1.5
+"""The same of one that names spots within rooms, and how many spots there are at least for a room (judgement)."""
 _FEWEST = 2
 """Different ways that one tells at least: a single "montiert" says how a thing was made."""
 _FEW = 0.5
@@ -115,7 +117,7 @@ def room_and_position(able: Sequence[Column], found: dict[str, Column], told: Gu
     if where is None or {"gallery", "displayed"} & {*found.keys() - {"gallery"}, *told.choices}:
         return
     room = next((one for one in able if one is not where and one.filled and not _holds_ways(one)), None)
-    if room is None or not _holds_ways(where):
+    if room is None or not (_holds_ways(where) or _within(where, room)):
         return
     found["gallery"], found["displayed"] = room, where
     told.doubts.append(f"column {room.name!r} is taken for the room, and {where.name!r} for where in it a thing is")
@@ -132,6 +134,13 @@ def _by_what_it_holds(columns: Sequence[Column], found: dict[str, Column], told:
     found["displayed"] = column
     told.doubts.append(f"column {column.name!r} is taken to say how objects are displayed or held, by what it holds")
     told.questions[:] = filter(None, (one.without(column.name) for one in told.questions))
+
+
+def _within(where: Column, room: Column) -> bool:
+    """Whether one column names several spots in each room of the other, some of them in words that are known."""
+    ways = sum(told_by(text) != HeldAs() for text in where.distinct)
+    spots = len(where.distinct) >= _SPOTS * len(room.distinct) and len(room.distinct) < len(room.filled)
+    return spots and ways >= max(_FEWEST, _SOME_WAYS * len(where.distinct))
 
 
 def _holds_ways(column: Column) -> bool:
