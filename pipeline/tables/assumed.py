@@ -12,6 +12,7 @@ from pipeline.records import Furniture
 from pipeline.tables import Range, Row, TableError, read_table, table
 from pipeline.tables.assumed_rows import AssumedRow, Friction, Material, ObjectClass, PairRow, WallDamping
 from pipeline.tables.furniture_rows import FurnitureRow
+from pipeline.tables.ideographs import shortened_signs
 from pipeline.tables.rows import any_of, checked
 from pipeline.tables.surface_rows import met_on, surfaces_in
 
@@ -45,7 +46,7 @@ class AssumedValues:
 
     @cached_property
     def _words(self) -> tuple[tuple[re.Pattern[str], Material], ...]:
-        return tuple((any_of(one.words), one) for one in self.materials.values() if one.words)
+        return tuple((_named(one.words), one) for one in self.materials.values() if one.words)
 
     @property
     def own(self) -> dict[str, int]:
@@ -72,7 +73,7 @@ class AssumedValues:
 
     def materials_in(self, text: str) -> tuple[Material, ...]:
         """Return all materials that a text names, in the museum's words; none where there is none."""
-        bare = _FINISH.sub("", text)
+        bare = shortened_signs(_FINISH.sub("", text))
         return tuple(one for pattern, one in self._words if pattern.search(bare))
 
     def friction_of(
@@ -147,9 +148,19 @@ _FINISH = re.compile(
 
 
 @lru_cache(maxsize=65536)
+def _named(words: Sequence[str]) -> re.Pattern[str]:
+    """Return what finds any of the words for a material; one after = is all that there is between two marks: 石、木."""
+    alone = [re.escape(shortened_signs(word[1:])) for word in words if word.startswith("=")]
+    within = any_of(shortened_signs(word) for word in words if not word.startswith("="))
+    if not alone:
+        return within
+    marks = r"\s、，,;；・/+と"
+    return re.compile(rf"{within.pattern}|(?:(?<=[{marks}])|^)(?:{'|'.join(alone)})(?=[{marks}(（]|$)", re.IGNORECASE)
+
+
 def _material_in(values: AssumedValues, text: str) -> Material | None:
     # What something is only glazed or plated with is not what it is made of: "tin-glazed earthenware" is no tin.
-    bare = _FINISH.sub("", text)
+    bare = shortened_signs(_FINISH.sub("", text))
     found = [(match.start(), -len(match[0]), one) for pattern, one in values._words if (match := pattern.search(bare))]
     # Of two that begin there the longer one: papier-mâché is no paper.
     return min(found, key=lambda each: each[:2])[2] if found else None

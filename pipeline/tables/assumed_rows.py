@@ -194,7 +194,7 @@ class Material(AssumedRow):
     name : str
         What tables call it.
     words : tuple of str
-        By which it is found in a record.
+        By which it is found in a record; one after = is all there is between two marks (=石).
     friction_as : str
         The row of friction.csv whose friction it has; "" for any.
     density, tensile : float

@@ -63,6 +63,7 @@ def material_words() -> dict[str, str]:
         for word in row["words"].split("|")
         if word
         and " " not in word
+        and word[0] != "="
         and ((plain := folded(word)) == word.casefold() or (len(plain) > _SHORT and plain not in _OTHERWISE))
     }
 

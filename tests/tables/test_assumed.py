@@ -290,3 +290,13 @@ def test_a_material_is_known_by_its_name_in_the_languages_that_classes_are_known
 def test_no_word_names_two_materials() -> None:
     words = [word.lower() for one in assumed().materials.values() for word in one.words]
     assert len(words) == len(set(words))
+
+
+@pytest.mark.parametrize(
+    ("text", "material"),
+    [("石", "stone"), ("木、漆", "wood"), ("銅", "bronze"), ("铜", "bronze"), ("陶", "terracotta"), ("석", "stone"),
+     ("鉄", "iron"), ("銅鎏金", "bronze"), ("金襴", None), ("土佐", None)],
+)  # fmt: skip
+def test_materials_of_one_sign_are_all_there_is(text: str, material: str | None) -> None:
+    found = assumed().material_in(text)
+    assert (found and found.name) == material
