@@ -149,11 +149,12 @@ def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column])
     if able:
         fields = {id(column) for column in found.values()}
 
-        def unlike(one: Column) -> tuple[bool, bool, bool, float, float]:
+        def unlike(one: Column) -> tuple[bool, bool, bool, bool, float, float]:
             sentences = one.prose and sum(" " in text for text in one.filled) > _MOSTLY * len(one.filled)
             dated = _dated(one) >= _MOSTLY
             number = one.numbering and not dated
             return (
+                one.dimensional > _MOSTLY,
                 sentences or dated,
                 id(one) in fields,
                 not number,
