@@ -36,7 +36,7 @@ _ELSEWHERE = frozenset(
 _SOURCES = frozenset({".py", ".csv", ".toml"})
 """Endings of the files that are code, or tables that code reads."""
 
-LIBRARIES = ("numba", "llvmlite", "numpy", "scipy", "obspy", "pywavelets", "openpyxl", "lxml")
+LIBRARIES = ("numba", "llvmlite", "numpy", "scipy", "obspy", "pywavelets", "openpyxl", "lxml", "pyyaml")
 """What computes results, and reads what they are computed of, besides the package and Python."""
 
 PRINTERS = ("jinja2", "markupsafe", "babel", "pyarrow", "reportlab", "python-bidi", "arabic-reshaper", "matplotlib")

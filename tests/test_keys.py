@@ -30,7 +30,7 @@ DRAWS = ("pipeline.report.files.report_writer", "pipeline.report.files.page_rend
 
 GROUPS, OURS = ("obspy.plugin.waveform",), "pipeline."
 
-MODULES = {"lxml": "lxml", "pywt": "pywavelets", "bidi": "python-bidi", "arabic_reshaper": "arabic-reshaper"}
+MODULES = {"pywt": "pywavelets", "bidi": "python-bidi", "arabic_reshaper": "arabic-reshaper", "yaml": "pyyaml"}
 """Libraries that are imported by another name than they are installed by."""
 
 HARMLESS = {

@@ -26,6 +26,14 @@ _COUNTED = re.compile(
 )
 """What stands before its name: "a pair of"."""
 
+_TECHNIQUE = re.compile(
+    r"\A\W*(?:oil|oils|acrylic|tempera|gouache|watercolou?rs?|pastel|ink|graphite|charcoal|pencil|crayon|olio|óleo|huile|öl"
+    r"|olieverf|olej|aquarelle?|acquerello|acuarela|aquarela|tempera|ulei|масло|λάδι|油彩)\s+(?:\w+\s+){0,2}?"
+    r"(?:on|su|sobre|sur|auf|op|na|pe|на|σε|à)\s+[^;.]{2,30}\Z",
+    re.IGNORECASE,
+)
+"""A title that is no more than how a picture is made: "Oil on canvas"."""
+
 _SHORT = 4
 """Words of such a part at the most (judgement)."""
 _COMPOUND = 4
@@ -35,7 +43,8 @@ _COMPOUND = 4
 def titled(values: dict[str, Any], columns: dict[str, ColumnMap]) -> None:
     """Put what a thing is ahead of a title that does not say it: "Teapot: Silver, London 1812".
 
-    Those are the opening of a description that names the thing in none of its words, a bare material, and a bare date.
+    Those are the opening of a description that names the thing in none of its words, a bare material or technique, and
+    a bare date.
 
     Parameters
     ----------
@@ -48,8 +57,9 @@ def titled(values: dict[str, Any], columns: dict[str, ColumnMap]) -> None:
     if not name or not title:
         return
     opening = columns["title"].opening and columns["title"].sources != columns["object_name"].sources
-    bare = name != title and (begins_with_material(title) or _DATED.match(title) is not None)
-    if not _says(title, name) if opening else bare:
+    technique = _TECHNIQUE.match(title) is not None
+    bare = name != title and (begins_with_material(title) or technique or _DATED.match(title) is not None)
+    if (technique or not _says(title, name)) if opening else bare:
         values["title"] = f"{name}: {title}"
 
 

@@ -144,6 +144,7 @@ def test_sizes_of_a_side_that_hold_more(tmp_path: Path) -> None:
     assert (jar.width_m, jar.depth_m) == (pytest.approx(8 * 0.0254), pytest.approx(8 * 0.0254))
     assert (portrait.height_m, portrait.width_m) == (pytest.approx(36 * 0.0254), pytest.approx(29 * 0.0254))
     assert any("text of sizes" in problem.message for problem in portrait.problems)
+    assert portrait.title == "Oil portrait: Oil on canvas"
     assert not found.guess.left
 
 
