@@ -176,6 +176,15 @@ def test_what_is_not_read_is_told(tmp_path: Path) -> None:
     assert set(found.guess.left) == {"Girth (cm)", "Curator's mood"}
 
 
+@pytest.mark.parametrize("now", ["Gallery 3", "Case 3"])
+def test_where_a_thing_is_kept_tells_nothing_of_how_it_is_shown(tmp_path: Path, now: str) -> None:
+    rows = "".join(f'{n},Vase,30,{now},"Store A, shelf {n}",shelf {n}\n' for n in range(1, 7))
+    heads = "No,Object,Height (cm),Current location,Normal location,Storage shelf\n"
+    _, items = found_in(tmp_path, heads + rows)
+    assert {item.gallery for item in items} == {now}
+    assert not any("shelf" in item.displayed + item.case for item in items)
+
+
 @pytest.mark.parametrize(
     ("place", "room", "case", "displayed"),
     [

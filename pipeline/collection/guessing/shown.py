@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import tomlkit
 
-from pipeline.collection.display_words import flag_of
-from pipeline.collection.guessing.columns import Column
+from pipeline.collection.display_words import flag_of, says_away
+from pipeline.collection.guessing.columns import Column, internal
 from pipeline.collection.guessing.fields import MOST_WORDS, tells_display
 from pipeline.collection.guessing.names import named, path_of, plain
 from pipeline.collection.guessing.notes import GuessNotes
@@ -26,6 +26,8 @@ _WAYS = 0.5
 """Share of its texts from which a column of another name is one of how objects are held (judgement)."""
 _SOME_WAYS, _SPOTS = 0.2, 1.5
 """The same of one that names spots within rooms, and how many spots there are at least for a room (judgement)."""
+_MOST_AWAY = 0.3
+"""Share of its texts that may name stores (judgement)."""
 _FEWEST = 2
 """Different ways that one tells at least: a single "montiert" says how a thing was made."""
 _FEW = 0.5
@@ -116,7 +118,8 @@ def room_and_position(able: Sequence[Column], found: dict[str, Column], told: Gu
     where = found.get("gallery")
     if where is None or {"gallery", "displayed"} & {*found.keys() - {"gallery"}, *told.choices}:
         return
-    room = next((one for one in able if one is not where and one.filled and not _holds_ways(one)), None)
+    rooms = [one for one in able if one is not where and one.filled and not (_of_stores(one) or internal(one))]
+    room = next((one for one in rooms if not _holds_ways(one)), None)
     if room is None or not (_holds_ways(where) or _within(where, room)):
         return
     found["gallery"], found["displayed"] = room, where
@@ -127,13 +130,20 @@ def room_and_position(able: Sequence[Column], found: dict[str, Column], told: Gu
 def _by_what_it_holds(columns: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:
     taken = {id(column) for column in found.values()}
     free = [one for one in columns if id(one) not in taken and one.filled and not one.prose]
-    able = [one for one in free if (what := named(one.name)) is None or what.field in _MAY_TELL]
+    able = [one for one in free if (what := named(one.name)) is None or (what.field in _MAY_TELL and not what.internal)]
+    # Where a thing is kept while it is not on display tells nothing of how it is shown.
+    able = [one for one in able if not _of_stores(one)]
     column = max(filter(_holds_ways, able), key=lambda one: len(one.filled), default=None)
     if column is None:
         return
     found["displayed"] = column
     told.doubts.append(f"column {column.name!r} is taken to say how objects are displayed or held, by what it holds")
     told.questions[:] = filter(None, (one.without(column.name) for one in told.questions))
+
+
+def _of_stores(column: Column) -> bool:
+    """Whether a column tells where things are kept that are not on display, by its name or by many of its texts."""
+    return says_away(column.name) or sum(map(says_away, column.distinct)) > _MOST_AWAY * len(column.distinct)
 
 
 def _within(where: Column, room: Column) -> bool:

@@ -29,6 +29,8 @@ FEET = frozenset({"in", "ft"})
 
 _WRITTEN = re.compile(r"\d\s?([\"″”]|''|[^\W\d_]{1,12})(?!\w)")
 """A number and what may be its unit, in a cell."""
+_WRITTEN_OFTEN = 0.3
+"""Share of the cells that must name the unit before the others are in it too (judgement)."""
 _FRACTION = re.compile(r"\d/(?:2|4|8|16|32|64)(?!\d)|[½¼¾⅛⅜⅝⅞]")
 _HALF = re.compile(r"1/2(?!\d)|½")
 _PLAIN = re.compile(r"\d+(?:[.,]\d+)?", re.ASCII)
@@ -135,7 +137,9 @@ def usual_unit(texts: Sequence[str]) -> tuple[str, str]:
         Such as ("mm", "millimetres are taken, for they are large and whole").
     """
     written = Counter(filter(None, (_written(text) for text in texts)))
-    if written and len(written) == 1 and (unit := next(iter(written))) != "ft":
+    # One in a thousand that names its unit is the exception among the others.
+    often = written.total() >= _WRITTEN_OFTEN * len(texts)
+    if often and len(written) == 1 and (unit := next(iter(written))) != "ft":
         return unit, f"{unit} is taken, in which others are written"
     numbers = [text for text in texts if _PLAIN.fullmatch(text)]
     fractions = [text for text in texts if _FRACTION.search(text)]
