@@ -357,7 +357,9 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         )
     text = tomlkit.dumps(document)
     proposal = Proposal.model_validate(document.unwrap())
-    unread = tuple(one.name for one in left if one.units < 0.5 and one.name not in text)
+    read = {column for _, column, _ in proposal.wanted()}
+    # A column of units was looked at, whether the mapping names it or the unit that it tells.
+    unread = tuple(one.name for one in left if one.units < 0.5 and one.name not in read)
     return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure), unread)
 
 

@@ -93,6 +93,7 @@ def parted(text: str) -> NamedPlace:
     return NamedPlace(text, displayed=text if hangs_above(text) else "")
 
 
+@lru_cache(maxsize=4096)
 def case_in(text: str) -> str:
     """Return the case, plinth or shelf that a text on how a thing is displayed names by its number; else "".
 

@@ -32,7 +32,7 @@ from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.headings import HEADING, heads_or_sums
 from pipeline.collection.sources.rows import NO_FAULTS, Row
 from pipeline.collection.unit_audit import Evidence, Suspicion
-from pipeline.collection.whole_cells import read_whole_sizes, spread_diameter
+from pipeline.collection.whole_cells import read_whole_sizes, sides_among, spread_diameter
 from pipeline.errors import KourosError, fault_words
 from pipeline.records import Item, Problem
 
@@ -269,6 +269,7 @@ class RowReader:
             places = [names.index(source) for source in column.sources if source in names]
             if places:
                 self._columns.append((field, column, places))
+        self._sides = sides_among(self._columns)
         self._key = next(places for field, _, places in self._columns if field == "object_number")
         self.flagged = "on_display" in mapping.columns and (
             mapping.columns["on_display"].constant is not None or any(f == "on_display" for f, *_ in self._columns)
@@ -368,7 +369,7 @@ class RowReader:
             for field, column, places in self._columns
         }
         spread_diameter(values, cells)
-        read_whole_sizes(values, cells, self._columns, row.cells, self._mapping.dimensions)
+        read_whole_sizes(values, cells, self._sides, row.cells, self._mapping.dimensions)
         if self._texts and self._mapping.dimensions is not None:
             self._fill(values, cells, self._mapping.dimensions, [row.cells[i] for i in self._texts])
         self.audit.lost(row, cells)

@@ -19,12 +19,23 @@ _MORE = re.compile(r"[^\W\d_]{3,}|\d\s?\S{0,6}\s?[x×]\s?\d|[øØ]", re.IGNORECA
 """What a cell that holds more than a number and its unit has."""
 
 
+Side = tuple[str, ColumnMap, int]
+"""A field that is a side of a thing, what the mapping says of it, and where its cell is."""
+
+
+def sides_among(columns: Sequence[tuple[str, ColumnMap, Sequence[int]]]) -> tuple[Side, ...]:
+    """Return the columns of sides that are read from one cell each.
+
+    Parameters
+    ----------
+    columns : sequence of (str, ColumnMap, sequence of int)
+        Fields, what the mapping says of them, and where their cells are.
+    """
+    return tuple((name, column, at[0]) for name, column, at in columns if name in _SIDES and len(at) == 1)
+
+
 def read_whole_sizes(
-    values: dict[str, Any],
-    cells: Cells,
-    columns: Sequence[tuple[str, ColumnMap, Sequence[int]]],
-    row: Sequence[str],
-    mapped: Texts | None,
+    values: dict[str, Any], cells: Cells, sides: Sequence[Side], row: Sequence[str], mapped: Texts | None
 ) -> None:
     """Read the cells of one side that tell the whole size, or that the side is a diameter, and say so.
 
@@ -34,25 +45,25 @@ def read_whole_sizes(
         Of the record so far, in SI; changed in place, as are the cells' provenance and problems.
     cells : Cells
         Of the row.
-    columns : sequence of (str, ColumnMap, sequence of int)
-        Fields, what the mapping says of them, and where their cells are.
+    sides : sequence of Side
+        The columns that are looked at.
     row : sequence of str
         The cells.
     mapped : Texts or None
         What the mapping says of texts of dimensions.
     """
-    for field, column, places in columns:
-        if field not in _SIDES or len(places) != 1 or not _MORE.search(text := row[places[0]]):
+    for field, column, at in sides:
+        if not _MORE.search(text := row[at]):
             continue
         unit = column.unit if column.unit in LENGTHS else None
-        sides = {
+        told = {
             part.dimension
             for part in parse(text, default_unit=unit, decimal=cells.decimal).parts
             if part.value is not None
         }
-        if values.get(field) is None and (len(sides - {"weight"}) > 1 or sides == {"diameter"}):
+        if values.get(field) is None and (len(told - {"weight"}) > 1 or told == {"diameter"}):
             _fill(values, cells, field, column, text, mapped, unit)
-        elif field == "width_m" and sides == {"diameter"} and values.get(field) and values.get("depth_m") is None:
+        elif field == "width_m" and told == {"diameter"} and values.get(field) and values.get("depth_m") is None:
             written = next((of.written for of in cells.provenance if of.field == field), "")
             values["depth_m"] = values[field]
             cells.provenance.append(Provenance("depth_m", Origin.DERIVED, written, "its diameter"))

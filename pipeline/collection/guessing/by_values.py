@@ -80,16 +80,20 @@ def _likeliest(columns: Sequence[Column], used: Iterable[Column], share: Callabl
     return best[2] if best is not None and best[0] >= _MOSTLY else None
 
 
+def _share(column: Column, says: Callable[[str], bool]) -> float:
+    """Share of a column's different texts, of some at most, that say something."""
+    some = column.distinct[:_SOME]
+    return sum(map(says, some)) / len(some) if some else 0.0
+
+
 def things(column: Column) -> float:
     """Share of a column's different texts that are short names of things: "Amphora", "armchair, walnut"."""
-    some = column.distinct[:_SOME]
-    return sum(map(names_thing, some)) / len(some) if some else 0.0
+    return _share(column, names_thing)
 
 
 def materials(column: Column) -> float:
     """Share of a column's different texts that name a material."""
-    some = column.distinct[:_SOME]
-    return sum(map(_is_material, some)) / len(some) if some else 0.0
+    return _share(column, _is_material)
 
 
 def _is_material(text: str) -> bool:
@@ -109,8 +113,7 @@ def accessions(column: Column) -> float:
 
     Whole numbers alone may be those of a database, and dates are none.
     """
-    some = column.distinct[:_SOME]
-    return sum(_is_accession(text) for text in some) / len(some) if some else 0.0
+    return _share(column, _is_accession)
 
 
 def _is_accession(text: str) -> bool:
@@ -119,8 +122,7 @@ def _is_accession(text: str) -> bool:
 
 def _dated(column: Column) -> float:
     """Share of a column's texts that are years or dates, and so number no object."""
-    some = column.distinct[:_SOME]
-    return sum(_YEARS.fullmatch(text) is not None for text in some) / len(some) if some else 0.0
+    return _share(column, lambda text: _YEARS.fullmatch(text) is not None)
 
 
 def repeated_in(column: Column) -> float:

@@ -148,14 +148,18 @@ def _of_stores(column: Column) -> bool:
 
 def _within(where: Column, room: Column) -> bool:
     """Whether one column names several spots in each room of the other, some of them in words that are known."""
-    ways = sum(told_by(text) != HeldAs() for text in where.distinct)
     spots = len(where.distinct) >= _SPOTS * len(room.distinct) and len(room.distinct) < len(room.filled)
-    return spots and ways >= max(_FEWEST, _SOME_WAYS * len(where.distinct))
+    return spots and _tells_ways(where, _SOME_WAYS)
 
 
 def _holds_ways(column: Column) -> bool:
+    return tells_display(column) and _tells_ways(column, _WAYS)
+
+
+def _tells_ways(column: Column, share: float) -> bool:
+    """Whether so many of a column's different texts, and `_FEWEST` at least, tell how a thing is held."""
     ways = sum(told_by(text) != HeldAs() for text in column.distinct)
-    return tells_display(column) and ways >= max(_FEWEST, _WAYS * len(column.distinct))
+    return ways >= max(_FEWEST, share * len(column.distinct))
 
 
 def place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:
