@@ -6,11 +6,12 @@ from functools import cache
 from textwrap import shorten
 
 from pipeline.analysis.rules import PICTURES, readings
+from pipeline.collection.places import beside_case, case_in
 from pipeline.quantities import LENGTHS
 from pipeline.records import Furniture, Hanging, Item, Mount, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
-from pipeline.tables.held_rows import CASES, hangs_above, stands_too, told_by, words_for
+from pipeline.tables.held_rows import CASES, hangs_above, stands_or_hangs, stands_too, told_by, words_for
 from pipeline.tables.rows import any_of
 from pipeline.tables.surface_rows import surfaces_in
 
@@ -73,11 +74,13 @@ def as_displayed(item: Item) -> Item:
 
 
 def _as_placed(item: Item) -> Item:
-    """Return a record with what its field for cases says, where that names none: "on the wall", "stands on floor"."""
-    told = told_by(item.case) if item.case.strip() and not _names_case(item) else None
-    if told is None or not (told.support in _ABOVE or told.furniture is Furniture.FLOOR):
+    """Return a record with what its field for cases says of how it is held: "on the wall", "case 3, hung"."""
+    if not item.case.strip():
         return item
-    return replace(item, displayed=item.case, case="")
+    if not _names_case(item):
+        return replace(item, displayed=item.case, case=case_in(item.case)) if stands_or_hangs(item.case) else item
+    beside = beside_case(item.case)
+    return replace(item, displayed=item.case) if beside and stands_or_hangs(beside) else item
 
 
 def _as_titled(item: Item) -> Item:

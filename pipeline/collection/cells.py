@@ -25,6 +25,10 @@ from pipeline.records import ContactPolygon, Origin, Problem, Provenance
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
 _NOTED = re.compile(r"\s*(?P<number>[^()]*\d[^()]*?)\s*(?P<note>\([^()\d]*[^\W\d_]{2}[^()\d]*\))\s*")
 """A number with a note in brackets behind it that has no number of its own: 5,3 (com pires)."""
+_GROUPED = {mark: re.compile(rf"[+-]?[1-9]\d{{0,2}}(?:{re.escape(mark)}\d{{3}})+(?!\d)", re.ASCII) for mark in ".,"}
+"""Thousands parted by a mark: 1,450 and 1.450; by the decimal mark the same characters are another number."""
+_SPACED = re.compile(r"[+-]?[1-9]\d{0,2}(?:[ \u00a0\u2009\u202f'\u2019]\d{3})+(?=[.,]\d+\Z|\Z)", re.ASCII)
+"""Thousands parted by a blank or an apostrophe, which can be nothing else."""
 _INFINITE = re.compile(r"[+-]?inf(inity)?", re.IGNORECASE)
 _LONGEST_NUMBER = 40
 _LONGEST_WRITTEN = 200
@@ -51,6 +55,8 @@ class Cells:
     ----------
     decimal : str
         The source's decimal mark.
+    thousands : bool
+        Whether the other of point and comma parts thousands.
     provenance : list of Provenance
         Gathers where each number comes from.
     problems : list of Problem
@@ -60,6 +66,7 @@ class Cells:
     """
 
     decimal: str = "."
+    thousands: bool = False
     provenance: list[Provenance] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     pairs: list[tuple[str, float, float]] = field(default_factory=list)
@@ -366,6 +373,8 @@ class Cells:
                 return value
         elif not _INFINITE.fullmatch(plain):
             hint = "write numbers without units or thousands separators"
+            if not self.thousands and _GROUPED["." if self.decimal == "," else ","].match(text):
+                hint += ", or where thousands are parted so say thousands = true in the mapping, [source]"
             if self.decimal == "." and "," in text:
                 hint += ', and if the comma is the decimal mark say decimal = "," in the mapping, [source]'
             self._note(name, column, f"{_show(text)} is not a number", f"{hint}; or list it as missing in the mapping")
@@ -377,6 +386,10 @@ class Cells:
         return text.replace(".", self.decimal) if isinstance(text, TypedNumber) else text
 
     def _plain(self, text: str) -> str:
+        text = unspaced(text)
+        found = _GROUPED["." if self.decimal == "," else ","].match(text) if self.thousands else None
+        if found is not None:
+            text = re.sub("[.,]", "", found.group()) + text[found.end() :]
         # A dot in a file with decimal commas separates thousands or is a slip: both are refused, not guessed.
         return text if self.decimal == "." else text.replace(".", "?").replace(",", ".")
 
@@ -395,6 +408,18 @@ class Cells:
     def _note(self, name: str, column: ColumnMap, message: str, remedy: str) -> None:
         source = " + ".join(_show(part) for part in column.sources)
         self.problems.append(Problem(name, f"column {source}: {message}", remedy))
+
+
+def unspaced(text: str) -> str:
+    """Return a number without the blanks or apostrophes that part its thousands: of "1 450,5" 1450,5.
+
+    Parameters
+    ----------
+    text : str
+        Of a cell; what is no such number stays.
+    """
+    found = _SPACED.match(text)
+    return text if found is None else re.sub(r"[^\d+-]", "", found.group()) + text[found.end() :]
 
 
 def _in_unit(unit: str) -> str:

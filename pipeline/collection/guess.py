@@ -29,13 +29,20 @@ from pipeline.collection.guessing.fields import (
     flag_among,
     images_among,
     pictures_said,
+    thousands_in,
 )
 from pipeline.collection.guessing.headings import place_by_heading
 from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named
 from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.guessing.orders import section_of
 from pipeline.collection.guessing.questions import Question
-from pipeline.collection.guessing.shown import place_of_shown, removed, room_and_position, words_of_display
+from pipeline.collection.guessing.shown import (
+    place_of_shown,
+    removed,
+    room_and_position,
+    ways_beside,
+    words_of_display,
+)
 from pipeline.collection.guessing.source import (
     columns_in,
     database,
@@ -162,6 +169,14 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
     if decimal == ",":
         source["decimal"] = decimal
         told.sure.append("decimal comma, as most numbers have it")
+    mark = "." if decimal == "," else ","
+    parted = [column for column in columns if column.numeric and thousands_in(column, mark)]
+    if parted:
+        source["thousands"] = True
+        told.doubts.append(
+            f"thousands are parted by {mark!r} in {', '.join(repr(column.name) for column in parted)}, beside hundreds "
+            "without it; leave thousands out of [source] where that is wrong"
+        )
     return _written(name, source, columns, told)
 
 
@@ -280,10 +295,11 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if both:
         told.questions[:] = [question for question in told.questions if question.key != "medium"]
         told.sure.append(f"the medium is {' and '.join(repr(column.name) for column in both)} together")
+    joined = {"medium": both, "displayed": ways_beside(columns, found, told)}
     second = None if "object_number" in told.choices else second_number(columns, found)
     length = None if "depth_m" in told.choices else length_beside(columns, found.get("depth_m"))
     place = found.get("gallery")
-    writer = Fields(columns, told.choices, told.doubts, told.questions, usual, place, both, second, length)
+    writer = Fields(columns, told.choices, told.doubts, told.questions, usual, place, joined, second, length)
     fields, used = writer.mapped(found)
     saying, field = (about, "title") if about is not None else (naming if described else None, "object_name")
     if saying is not None and field in fields:

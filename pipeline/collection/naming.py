@@ -58,7 +58,8 @@ def titled(values: dict[str, Any], columns: dict[str, ColumnMap]) -> None:
         return
     opening = columns["title"].opening and columns["title"].sources != columns["object_name"].sources
     technique = _TECHNIQUE.match(title) is not None
-    bare = name != title and (begins_with_material(title) or technique or _DATED.match(title) is not None)
+    said = re.search(rf"(?<!\w){re.escape(folded(name))}(?!\w)", folded(title)) is not None
+    bare = not said and (begins_with_material(title) or technique or _DATED.match(title) is not None)
     if (technique or not _says(title, name)) if opening else bare:
         values["title"] = f"{name}: {title}"
 

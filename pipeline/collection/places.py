@@ -107,6 +107,19 @@ def case_in(text: str) -> str:
     return next((piece.strip() for piece in pieces if numbered.match(piece)), "")
 
 
+@lru_cache(maxsize=4096)
+def beside_case(text: str) -> str:
+    """Return what a text on a case says beside its name: of "case 4, hung" that it hangs; "" for nothing.
+
+    Parameters
+    ----------
+    text : str
+        As the museum writes it.
+    """
+    pieces = _SEPARATOR.split(text[:LONGEST])
+    return ", ".join(piece for piece in pieces if not _patterns()[0].match(piece))
+
+
 def _tells(piece: str) -> bool:
     told = told_by(piece)
     return told.support is not None or told.furniture is not None

@@ -263,7 +263,7 @@ class RowReader:
         names = [cell.strip() for cell in header.cells]
         check_header(mapping, file, names)
         self._file = file
-        self._decimal = mapping.source.decimal
+        self._decimal, self._thousands = mapping.source.decimal, mapping.source.thousands
         self._columns: list[tuple[str, ColumnMap, list[int]]] = []
         for field, column in mapping.columns.items():
             places = [names.index(source) for source in column.sources if source in names]
@@ -361,7 +361,7 @@ class RowReader:
         if message:
             self._reject(row, "", message, remedy)
             return
-        cells = Cells(self._decimal)
+        cells = Cells(self._decimal, self._thousands)
         if row.faults:
             self._refuse_cells(row, cells)
         values: dict[str, Any] = self._constants | {

@@ -12,7 +12,10 @@ from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support
 from pipeline.tables import table
 from pipeline.tables.rows import BUT_NOT, SOME_WORDS, Entries, TableRow, Text, checked
 
-CASES = ("case", "cases", "Schrank", "kast", "Vit", "Vitr", "ケース")
+CASES = (
+    *("case", "cases", "Schrank", "kast", "Vit", "Vitr", "ケース", "armoire", "armadio", "armario", "armário", "dolap"),
+    *("skab", "skåp", "skap", "kaappi", "szafa", "шкаф", "skříň", "ormar", "dulap", "szekrény", "ντουλάπα", "armari"),
+)
 """Words that name a case where a number follows them, or in a field for cases: else they may be of furniture."""
 
 _STEM = r"\w{0,10}"
@@ -167,6 +170,18 @@ def told_by(text: str) -> HeldAs:
     return HeldAs(
         **{name: next((one for row in found if (one := getattr(row, name)) is not None), None) for name in names}
     )
+
+
+def stands_or_hangs(text: str) -> bool:
+    """Whether a text tells how a thing is held, or that it is on the floor, not only what it stands in.
+
+    Parameters
+    ----------
+    text : str
+        In the museum's words.
+    """
+    told = told_by(text)
+    return told.support is not None or told.furniture is Furniture.FLOOR
 
 
 @lru_cache(maxsize=4096)

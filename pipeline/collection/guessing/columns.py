@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from statistics import median
 
+from pipeline.collection.cells import unspaced
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.names import (
@@ -82,7 +83,7 @@ class Column:
     @cached_property
     def numbers(self) -> list[str]:
         """Those that hold a number alone."""
-        return [value for value in self.filled if NUMBER.fullmatch(value)]
+        return [number for value in self.filled if NUMBER.fullmatch(number := unspaced(value))]
 
     @cached_property
     def by_hand(self) -> float:

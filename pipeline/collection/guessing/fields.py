@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import tomlkit
 
@@ -34,7 +34,9 @@ _HELD = {"furniture_anchorage": "anchorage"}
 _NAMING = 0.5
 """Share of a column's texts that name a unit from which each is read with its own."""
 
-_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
+_THOUSANDS = {mark: re.compile(rf"[+-]?[1-9]\d{{0,2}}{re.escape(mark)}\d{{3}}", re.ASCII) for mark in ",."}
+_NEXT = 100
+"""A whole number of a column from which its numbers may go on to thousands (judgement)."""
 _COMMA = re.compile(r"(?<![\d,.])\d+,\d{1,2}(?![\d,.])", re.ASCII)
 _POINT = re.compile(r"(?<![\d,.])\d+\.\d{1,2}(?![\d,.])", re.ASCII)
 
@@ -45,21 +47,43 @@ def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:
     parted : cells are parted by commas; there a number of thousands may have been put into quotes as well ("1,250")
     """
     commas = points = 0
+    grouped = False
     for column in columns:
         what = named(column.name)
         if what is not None and what.field == "object_number":
             # 1990.4 is the fourth object of that year.
             continue
+        if thousands_in(column, ","):
+            continue
+        if thousands_in(column, "."):
+            grouped = True
+            continue
         for number in column.values:
             # What the source itself holds as a number says nothing of how people write one.
             if not isinstance(number, TypedNumber) and NUMBER.fullmatch(number.strip()):
-                commas += "," in number and not (parted and _THOUSANDS.fullmatch(number.strip()))
+                commas += "," in number and not (parted and _THOUSANDS[","].fullmatch(number.strip()))
                 points += "." in number
         if not column.numeric and (column.dimensional > 0.2 or (what is not None and what.field == TEXTS)):
             for text in column.filled:
                 commas += len(_COMMA.findall(text))
                 points += len(_POINT.findall(text))
-    return "," if commas > points else "."
+    return "," if commas > points or (grouped and not points) else "."
+
+
+def thousands_in(column: Column, mark: str) -> bool:
+    """Say whether a mark parts thousands in a column: three digits stand behind each, beside hundreds without it.
+
+    column : of numbers
+    mark : of "," and "."
+    """
+    what = named(column.name)
+    if what is not None and what.field == "object_number":
+        return False
+    numbers = [one.strip() for one in column.filled if not isinstance(one, TypedNumber)]
+    numbers = [one for one in numbers if NUMBER.fullmatch(one)]
+    marked = [one for one in numbers if mark in one]
+    hundreds = sum(one.isdecimal() and int(one) >= _NEXT for one in numbers)
+    return 0 < len(marked) <= hundreds and all(map(_THOUSANDS[mark].fullmatch, marked))
 
 
 def images_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
@@ -158,8 +182,8 @@ class Fields:
         Of the usual places of objects, which counts where that of the places now is empty.
     place : Column or None
         Of the places now.
-    medium : tuple of Column
-        Of materials and of techniques, where a file tells each in a column of its own.
+    joined : mapping of str to tuple of Column
+        Field -> the columns whose texts it has together: of materials and of techniques.
     second : Column or None
         Of other numbers, for objects of which that of the objects' numbers says only that they have none.
     length : Column or None
@@ -172,7 +196,7 @@ class Fields:
     questions: list[Question]
     usual: Column | None = None
     place: Column | None = None
-    medium: tuple[Column, ...] = ()
+    joined: Mapping[str, tuple[Column, ...]] = field(default_factory=dict)
     second: Column | None = None
     length: Column | None = None
 
@@ -224,10 +248,10 @@ class Fields:
                 entry["columns"], entry["first"] = [column.name, more.name], True
                 self.questions[:] = [question for question in self.questions if question.key != name]
                 used.append(more)
-            if name == "medium" and self.medium:
+            if self.joined.get(name):
                 entry = tomlkit.table()
-                entry["columns"], entry["separator"] = [one.name for one in self.medium], ", "
-                used += (one for one in self.medium if one is not column)
+                entry["columns"], entry["separator"] = [one.name for one in self.joined[name]], ", "
+                used += (one for one in self.joined[name] if one is not column)
             if entry is not None:
                 out[name] = entry
                 used.append(column)

@@ -11,7 +11,8 @@ from pipeline.collection.guessing.columns import Column, internal
 from pipeline.collection.guessing.fields import MOST_WORDS, tells_display
 from pipeline.collection.guessing.names import named, path_of, plain
 from pipeline.collection.guessing.notes import GuessNotes
-from pipeline.tables.held_rows import HeldAs, told_by
+from pipeline.collection.places import case_in
+from pipeline.tables.held_rows import HeldAs, stands_or_hangs, told_by
 
 _REMOVED = frozenset(
     {
@@ -100,6 +101,8 @@ def words_of_display(columns: Sequence[Column], found: dict[str, Column], told: 
         found["displayed"] = found.pop("support")
         told.doubts.append(f"column {mounts.name!r} is taken to say in words how objects are displayed or held")
     if not {"displayed", "support"} & {*found, *told.choices}:
+        _cases_and_spots(found, told)
+    if not {"displayed", "support"} & {*found, *told.choices}:
         _by_what_it_holds(columns, found, told)
 
 
@@ -124,21 +127,70 @@ def room_and_position(able: Sequence[Column], found: dict[str, Column], told: Gu
         return
     found["gallery"], found["displayed"] = room, where
     told.doubts.append(f"column {room.name!r} is taken for the room, and {where.name!r} for where in it a thing is")
-    told.questions[:] = filter(None, (one.without(where.name) for one in told.questions))
+    told.questions[:] = [one for one in told.questions if one.key != "gallery"]
+    _ask_no_more(where, told)
+
+
+def _ask_no_more(taken: Column, told: GuessNotes) -> None:
+    """Leave a column that is taken out of what may be chosen for another field."""
+    told.questions[:] = filter(None, (one.without(taken.name) for one in told.questions))
+
+
+def _cases_and_spots(found: dict[str, Column], told: GuessNotes) -> None:
+    """Take a column of cases for where in a room things are, where some of it says that: "on platform", "hung"."""
+    cases = found.get("case")
+    if cases is None or "case" in told.choices or cases is found.get("gallery"):
+        return
+    spots = sum(not case_in(text) and stands_or_hangs(text) for text in cases.distinct)
+    if spots >= max(_FEWEST, _SOME_WAYS * len(cases.distinct)):
+        found["displayed"] = found.pop("case")
+        told.doubts.append(f"column {cases.name!r} is taken to say in which case things are, and how they are held")
 
 
 def _by_what_it_holds(columns: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:
+    column = _free_to_tell(columns, found)
+    if column is not None:
+        found["displayed"] = column
+        told.doubts.append(
+            f"column {column.name!r} is taken to say how objects are displayed or held, by what it holds"
+        )
+        _ask_no_more(column, told)
+
+
+def ways_beside(columns: Sequence[Column], found: Mapping[str, Column], told: GuessNotes) -> tuple[Column, ...]:
+    """Return the column of how objects are displayed and one of remarks that says it too: "bolted to platform".
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    found : mapping of str to Column
+        Field -> its column.
+    told : GuessNotes
+        What is said of it; grows.
+
+    Returns
+    -------
+    tuple of Column
+        Both; () where no other column says it.
+    """
+    first = found.get("displayed")
+    second = None if first is None or "displayed" in told.choices else _free_to_tell(columns, found)
+    if first is None or second is None:
+        return ()
+    told.doubts.append(f"column {second.name!r} is taken to say more of how objects are held, by what it holds")
+    _ask_no_more(second, told)
+    return first, second
+
+
+def _free_to_tell(columns: Sequence[Column], found: Mapping[str, Column]) -> Column | None:
+    """Return the column that no field takes, most of whose texts tell how things are held."""
     taken = {id(column) for column in found.values()}
     free = [one for one in columns if id(one) not in taken and one.filled and not one.prose]
     able = [one for one in free if (what := named(one.name)) is None or (what.field in _MAY_TELL and not what.internal)]
     # Where a thing is kept while it is not on display tells nothing of how it is shown.
     able = [one for one in able if not _of_stores(one)]
-    column = max(filter(_holds_ways, able), key=lambda one: len(one.filled), default=None)
-    if column is None:
-        return
-    found["displayed"] = column
-    told.doubts.append(f"column {column.name!r} is taken to say how objects are displayed or held, by what it holds")
-    told.questions[:] = filter(None, (one.without(column.name) for one in told.questions))
+    return max(filter(_holds_ways, able), key=lambda one: len(one.filled), default=None)
 
 
 def _of_stores(column: Column) -> bool:

@@ -97,6 +97,10 @@ class SourceSettings(BaseModel):
 
     format: str = Field(description="The kind of source.")
     decimal: Literal[".", ","] = Field(default=".", description="The decimal mark of numbers that stand in texts.")
+    thousands: bool = Field(
+        default=False,
+        description="Whether thousands of numbers in cells of their own are parted by the other of comma and point.",
+    )
     unmapped_columns: Literal["ignore", "refuse"] = Field(
         default="ignore", description="What to do with a column that no field is mapped to."
     )
