@@ -35,6 +35,10 @@ _WALL = re.compile(
     r"wall|wand\b|wänd|\bmur|paret|pared|perete|τοίχ|壁|벽|墙|\bzid|стен|стін|ścian|stěn|\bfal|duvar|vegg|vägg|væg|sein",
     re.IGNORECASE,
 )
+DEEP = 0.25
+"""Smaller plan dimension [m] from which what stands by its class hardly hangs flat on a wall: judgement."""
+STANDS_FROM = 1.0
+"""Height [m] from which such a thing stands before the wall that it is fixed to: judgement."""
 HANGS_FROM = 0.5
 """Largest size [m] from which a title is believed that says that a thing hangs from above: judgement."""
 
@@ -163,6 +167,13 @@ def as_told(item: Item, row: ObjectClass) -> Item:
     """
     if row.support is Support.SUSPENDED and _by_chain_alone(item):
         return replace(item, support=Support.SUSPENDED, hanging=None)
+    if row.support is Support.FREESTANDING and WHEN_HELD not in row.models and item.support is Support.HUNG:
+        if item.hanging is Hanging.FIXED and _large(item, STANDS_FROM):
+            # A wardrobe or a longcase clock that is screwed to the wall stands there, and is held by it.
+            return replace(item, support=Support.FASTENED, hanging=None)
+        if item.hanging in (None, Hanging.WIRE) and _large(item, 0.0) and not _named_wall(item):
+            # A bell, a bicycle or a drum that hangs, and of no wall is told, hangs from above.
+            return replace(item, support=Support.SUSPENDED, hanging=None)
     if item.support is not None or item.hanging is not None:
         return item
     if item.isolator.strip():
@@ -177,8 +188,17 @@ def as_told(item: Item, row: ObjectClass) -> Item:
 
 def _by_chain_alone(item: Item) -> bool:
     """Whether the words for its display tell that a thing hangs by chains or wires, and of no wall."""
-    words = item.displayed
-    return told_by(words).hanging is Hanging.WIRE is item.hanging and not _WALL.search(f"{item.gallery} {words}")
+    return told_by(item.displayed).hanging is Hanging.WIRE is item.hanging and not _named_wall(item)
+
+
+def _named_wall(item: Item) -> bool:
+    return _WALL.search(f"{item.gallery} {item.displayed}") is not None
+
+
+def _large(item: Item, height: float) -> bool:
+    """Whether a thing that is told to hang is so deep, and so high, that it hardly hangs flat on a wall."""
+    plan = [side for side in (item.width_m, item.depth_m) if side]
+    return len(plan) > 1 and min(plan) >= DEEP and (item.height_m or 0.0) >= height and bool(item.displayed.strip())
 
 
 def in_case(item: Item, row: ObjectClass) -> bool:

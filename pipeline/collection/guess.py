@@ -225,6 +225,13 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         told.sure.append(
             f"{named_twice[0].name!r} names things and {named_twice[1].name!r} is their title: it has more words"
         )
+    if not {"gallery", "on_display"} & told.choices.keys() and "gallery" not in found:
+        place_of_shown(found, told)
+    if "gallery" not in found and "gallery" not in told.choices:
+        placed = place_among(columns, found.values())
+        if placed is not None:
+            found["gallery"] = placed
+            told.doubts.append(f"column {placed.name!r} is taken to tell where objects are, by what it holds")
     if "title" not in told.choices and not any(key in found and found[key].filled for key in {*_NAMING} - {*by_value}):
         saying = naming_among(columns, found.values())
         if saying is not None:
@@ -263,13 +270,6 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if "long" in source:
         document["source"]["long"] = source["long"]
     document["museum"] = {"name": "Our museum"}
-    if not {"gallery", "on_display"} & told.choices.keys() and "gallery" not in found:
-        place_of_shown(found, told)
-    if "gallery" not in found and "gallery" not in told.choices:
-        placed = place_among(columns, found.values())
-        if placed is not None:
-            found["gallery"] = placed
-            told.doubts.append(f"column {placed.name!r} is taken to tell where objects are, by what it holds")
     room_and_position(able.get("gallery", ()), found, told)
     words_of_display(columns, found, told)
     if "on_display" not in found and "on_display" not in told.choices:

@@ -28,6 +28,10 @@ def written(part: DimensionPart, read: Dimensions) -> str:
     return characters if named else f"{characters} {part.unit}".strip()
 
 
+_TONNES = re.compile(r"(?<=\d)\s*(?:t|to|тонн[аы]?|т|톤|吨|噸|トン)\.?(?=\s*\Z)", re.IGNORECASE)
+"""How tonnes are written in a cell of weights."""
+
+
 def of_cell(text: str, kind: str, decimal: str) -> tuple[float, str] | None:
     """Return the value and the characters of a cell that holds one number with its unit.
 
@@ -46,7 +50,9 @@ def of_cell(text: str, kind: str, decimal: str) -> tuple[float, str] | None:
         In SI, and as written; None where it does not hold one number with its unit.
     """
     slipped = _SLIPPED.fullmatch(text)
-    read = parse(text if slipped is None else "".join(slipped.groups()), decimal=decimal)
+    plain = text if slipped is None else "".join(slipped.groups())
+    # In a text of sizes a T is a label: a depth, or Tiefe.
+    read = parse(_TONNES.sub(" tonnes", plain) if kind == "kg" else plain, decimal=decimal)
     parts = [part for part in read.parts if part.value is not None]
     if len(parts) != 1 or (parts[0].dimension == "weight") != (kind == "kg") or read.having("remainder"):
         return None

@@ -9,7 +9,7 @@ from pipeline.records import Furniture
 from pipeline.tables.held_rows import CASES, hangs_above, told_by, words_for
 from pipeline.tables.rows import UNPARTED, any_of
 
-_SEPARATOR = re.compile(r"\s*[,;/>|]\s*|:\s+|\s+[-–—]\s+")
+_SEPARATOR = re.compile(r"\s*[,;/>|，、；]\s*|:\s+|\s+[-–—]\s+")
 LONGEST = 300
 """Characters beyond which a text names no place that could be parted."""
 
@@ -17,6 +17,8 @@ _ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
 _SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS."""
 
+_CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
+"""A case by its sign alone, ahead of a shelf in it: CG-12."""
 
 ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
@@ -103,8 +105,12 @@ def case_in(text: str) -> str:
         As the museum writes it: "showcase 4", "Vitrine 12, on a cushion".
     """
     numbered = _patterns()[1]
-    pieces = _SEPARATOR.split(text[:LONGEST])
-    return next((piece.strip() for piece in pieces if numbered.match(piece)), "")
+    pieces = [piece.strip() for piece in _SEPARATOR.split(text[:LONGEST])]
+    at = next((at for at, piece in enumerate(pieces) if numbered.match(piece)), None)
+    if at is None:
+        return ""
+    shelf = told_by(pieces[at]).furniture is Furniture.SHELF
+    return pieces[at - 1] if at and shelf and _CODE.fullmatch(pieces[at - 1]) else pieces[at]
 
 
 @lru_cache(maxsize=4096)

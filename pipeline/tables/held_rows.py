@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import Annotated
 
@@ -22,6 +22,16 @@ _STEM = r"\w{0,10}"
 """What ~ stands for in these words: the ending of a stem, or what is written together with it."""
 
 _PAIR = " + "
+
+_NOT_BEHIND = re.compile(
+    r"\s*(?:değil|(?:され|し)てい(?:な|ませ)|されず|せず|なし|안|(?:되|하)?(?:어|여)? ?있지|(?:되|하)?지 ?않|없"
+    r"|نشده|نیست|nincs|missing)",
+    re.IGNORECASE,
+)
+"""Behind what is not done, in languages that deny there."""
+
+_NOT_WITHIN = re.compile(r"m[ae]m[ıi]ş|[ae]tl[ae]n\b", re.IGNORECASE)
+"""In a stem's ending that denies it: sabitlenmemiş, rögzítetlen."""
 
 _NEAR = 40
 """Characters between two words that belong together."""
@@ -93,7 +103,19 @@ class _OneRow:
     def says(self, text: str) -> bool:
         """Whether a text says what the row tells; where it is not so, or only meant to be, nothing holds a thing."""
         holds = self.row.support in (Support.FASTENED, Support.HUNG, Support.SUSPENDED)
-        return any(not (holds and BUT_NOT.search(text[: one.start()])) for one in self.found(text))
+        return any(not (holds and _denied(text, one)) for one in self.found(text))
+
+    def denies(self, text: str) -> bool:
+        """Whether a text says that a thing is not made fast: "not bolted", "sabitlenmemiş"."""
+        return self.row.support is Support.FASTENED and any(_denied(text, one) for one in self.found(text))
+
+
+def _denied(text: str, said: re.Match[str]) -> bool:
+    return bool(
+        BUT_NOT.search(text[: said.start()])
+        or _NOT_BEHIND.match(text[said.end() :])
+        or _NOT_WITHIN.search(said.group())
+    )
 
 
 @cache
@@ -163,9 +185,15 @@ def told_by(text: str) -> HeldAs:
     """
     found = [told.row for told in _rows() if told.says(text)] if text.strip() else []
     support = next((row.support for row in found if row.support is not None), None)
+    if support is None and any(told.denies(text) for told in _rows()):
+        return replace(_of(found), support=Support.FREESTANDING)
     if support in (Support.HUNG, Support.SUSPENDED):
         # "On the wall over the sideboard": what hangs stands on nothing.
         found = [row for row in found if row.support in (None, support)]
+    return _of(found)
+
+
+def _of(found: Sequence[HeldWords]) -> HeldAs:
     names = ("support", "hanging", "furniture", "anchorage", "mount")
     return HeldAs(
         **{name: next((one for row in found if (one := getattr(row, name)) is not None), None) for name in names}

@@ -30,13 +30,14 @@ _DENIED = (
     r"not|never|without|no longer|isn't|aren't|formerly|previously|once|to be|should be|must be|will be|can be"
     r"|needs? to be|nicht|ohne|keine?|früher|ehemals|muss|müsste|soll|sollte|wird|non|pas|sans|jamais|autrefois"
     r"|doit être|sera|senza|già|deve essere|sarà|no|sin|nunca|antes|debe ser|será|niet|zonder|moet|wordt|δεν|χωρίς"
-    r"|πρέπει να|não|sem|nu|fără|inte|ej|utan|ikke|uden|uten|ei|nie|bez|ne|není|nem|nincs|не|нет|без|لا|غير|بدون"
+    r"|πρέπει να|não|sem|nu|fără|inte|ej|utan|ikke|uden|uten|ei|nie|bez|ne|není|nejsou|nije|nisu|ni|nem|nincs"
+    r"|не|нет|без|μη|μην|لا|غير|ليس|بدون|לא|אינו|אינה|ללא"
     r"|taken down|taken off|removed|abgenommen|abgehängt von|décrochée?|tolt[oa]|rimoss[oa]|descolgad[oa]|retirad[oa]"
 )
 NO = re.compile(rf"\b(?:{_DENIED})\s+(?:\w+\s+)?$", re.IGNORECASE)
 """Before a thing that then is not there: "without felt", "no rubber"."""
 
-BUT_NOT = re.compile(rf"(?:\b(?:{_DENIED})\s+(?:\w+\s+){{0,3}}|\bun)$", re.IGNORECASE)
+BUT_NOT = re.compile(rf"(?:\b(?:{_DENIED})\s+(?:\w+\s+){{0,3}}|\bun|[无無未不非没沒]有?)$", re.IGNORECASE)
 """Before what then is not done: "not bolted", "must be clamped", "nicht an der Wand befestigt"."""
 
 SOME_WORDS = r"(?:\w+\W+){0,3}"

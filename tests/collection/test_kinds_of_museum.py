@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.told import as_displayed
+from pipeline.collection.guessing.short_heads import short_heads
 from pipeline.collection.mapping import load_mapping
-from pipeline.collection.places import beside_case
+from pipeline.collection.places import beside_case, case_in
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import Proposed, proposed
-from pipeline.records import Furniture, Item, Support
+from pipeline.records import Furniture, Hanging, Item, Support
 from pipeline.tables.held_rows import told_by
 
 NATURE = """Catalog #,Specimen,Preparation,Hall,Exhibit unit,Height (in),Length (in),Width (in),Wt (lb),Notes
@@ -32,6 +34,27 @@ INSTRUMENTS = """N. inv.;Strumento;Materiali;Sala;Vetrina / posizione;H cm;L cm;
 4;Pianoforte a coda;palissandro;Sala 4;a pavimento;101;255;148
 5;Corno naturale;ottone;Sala 3;vetrina 6, ripiano 2;22;38;26
 6;Timpano;rame, pelle;Sala 5;su treppiede;85;66;66
+"""
+PUPPETS = """Inv. č.;Předmět;Materiál;Místnost;Umístění;v. cm;š. cm;hl. cm
+1;Marioneta;dřevo, textil;Sál 1;vitrína 2, zavěšená na vlasci;68;22;15
+2;Loutkové divadlo;dřevo, lepenka;Sál 1;na stole;120;140;70
+3;Kulisa les;plátno, lať;Sál 2;opřená o stěnu;250;300;3
+4;Skříň s rekvizitami;dub;Sál 3;u zdi, kotveno;198;110;55
+5;Busta;bronz;Vstup;na soklu, přišroubovaná;48;35;30
+"""
+SHIPS = """Nº Inv;Designação;Sala / Local;Suporte expositivo;Comp. (m);Larg. (m);Alt. (m);Peso
+1;Galeota real;Pavilhão;berço de madeira;29,5;3,9;4,2;12 t
+2;Modelo de caravela;Sala 1;vitrine sobre mesa;1,10;0,42;0,95;14 kg
+3;Figura de proa;Sala 2;fixada à parede com ferragens;0,70;0,80;2,10;180 kg
+4;Astrolábio náutico;Sala 1;vitrine 4;;0,18;0,19;2,4 kg
+5;Âncora;Exterior;no chão;3,20;2,10;0,50;1,8 t
+6;Lanterna de popa;Sala 2;suspensa do teto por corrente;0,60;0,60;1,40;45 kg
+"""
+COSTUME = """ID,Garment,Fabric,Exhibition area,Display method,Overall H,Max W,Max D
+1,Court mantua,"silk, silver thread","Europe, Bay 3",on custom mannequin,5 ft 9 in,6 ft 1 in,2 ft
+2,Evening gown,silk satin,"Fashion gallery, island 2",bust form on pole stand,65 in,30 in,26 in
+3,Waistcoat,silk,"Fashion gallery, drawer 14",flat in drawer,24 in,20 in,
+4,Samurai armour,"iron, silk","Japan, Case 5",seated on armour box,52 in,24 in,22 in
 """
 
 
@@ -142,3 +165,95 @@ def test_thousands_parted_by_blanks_and_apostrophes(tmp_path: Path, blank: str) 
 def test_participles_in_every_gender_and_number(words: str, support: Support) -> None:
     assert told_by(words).support is support
     assert told_by(f"{words} 2").support is support
+
+
+def test_heads_that_are_labels_of_sizes(tmp_path: Path) -> None:
+    _, items = listed(tmp_path, PUPPETS)
+    assert [(one.height_m, one.width_m, one.depth_m) for one in items.values()][:3] == [
+        (0.68, 0.22, 0.15),
+        (1.2, 1.4, 0.7),
+        (2.5, 3.0, 0.03),
+    ]
+    assert [classify(one).support for one in items.values()][2:] == [
+        Support.FREESTANDING,
+        Support.FASTENED,
+        Support.FASTENED,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("heads", "fields"),
+    [
+        (["v. cm", "š. cm", "hl. cm"], ["height_m", "width_m", "depth_m"]),
+        (["wys.", "szer.", "gł."], ["height_m", "width_m", "depth_m"]),
+        (["В", "Ш", "Г"], ["height_m", "width_m", "depth_m"]),
+        (["Overall H", "Max W", "Max D"], ["height_m", "width_m", "depth_m"]),
+        (["En", "Boy"], ["width_m", "height_m"]),
+        (["C", "N", "R"], [None, None, None]),
+    ],
+)
+def test_what_short_heads_mean_beside_each_other(heads: list[str], fields: list[str | None]) -> None:
+    found = short_heads(dict(enumerate(heads)), set())
+    assert [found[at].field if at in found else None for at in range(len(heads))] == fields
+
+
+def test_a_support_that_is_shown_on_is_no_material_and_tonnes_are_weights(tmp_path: Path) -> None:
+    _, items = listed(tmp_path, SHIPS)
+    assert {one.medium for one in items.values()} == {""}
+    assert [one.mass_kg for one in items.values()] == [12000.0, 14.0, 180.0, 2.4, 1800.0, 45.0]
+    assert items["1"].depth_m == 29.5
+    assert items["4"].case == "vitrine 4"
+    assert as_displayed(items["3"]).hanging is Hanging.FIXED
+
+
+def test_an_exhibition_area_is_no_title(tmp_path: Path) -> None:
+    _, items = listed(tmp_path, COSTUME)
+    assert [one.gallery for one in items.values()] == [
+        "Europe, Bay 3",
+        "Fashion gallery, island 2",
+        "Fashion gallery, drawer 14",
+        "Japan",
+    ]
+    assert items["4"].case == "Case 5"
+    # 5 ft 9 in and 6 ft 1 in, by the inch of 25.4 mm.
+    assert (items["1"].height_m, items["1"].width_m) == pytest.approx((69 * 0.0254, 73 * 0.0254), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *("nicht verschraubt", "não fixada", "pas fixée", "no bolts", "to be bolted", "never bolted", "niet verankerd"),
+        *("地面，无固定", "没有固定", "固定していない", "고정되어 있지 않음", "sabitlenmemiş", "sabitlenmiş değil"),
+        *("rögzítetlen", "nije pričvršćen", "není ukotven", "не закреплена", "δεν είναι στερεωμένη", "לא מקובע"),
+    ],
+)
+def test_what_is_not_made_fast_stands_free(words: str) -> None:
+    assert told_by(words).support is Support.FREESTANDING
+
+
+def stands(name: str, words: str, height: float, width: float, depth: float) -> Support:
+    item = replace(listed_item(), object_name=name, displayed=words, height_m=height, width_m=width, depth_m=depth)
+    return classify(item).support
+
+
+def listed_item() -> Item:
+    return Item(object_number="1", gallery="Hall", title="", on_display=True)
+
+
+def test_what_is_fixed_to_a_wall_stands_there_or_hangs() -> None:
+    assert stands("Longcase clock", "fixed to wall", 1.92, 0.42, 0.3) is Support.FASTENED
+    assert stands("Wardrobe", "an der Wand verschraubt", 2.1, 1.2, 0.6) is Support.FASTENED
+    assert stands("Name plate", "screwed to wall", 0.3, 0.6, 0.04) is Support.HUNG
+
+
+def test_what_is_deep_and_hangs_of_no_wall_hangs_from_above() -> None:
+    assert stands("Campana", "appesa al castello", 0.64, 0.7, 0.7) is Support.SUSPENDED
+    assert stands("Bicycle", "colgada", 1.0, 1.65, 0.45) is Support.SUSPENDED
+    assert stands("Bicycle", "colgada en la pared", 1.0, 1.65, 0.45) is Support.HUNG
+    assert stands("Propeller", "duvara asılı", 0.15, 0.25, 2.4) is Support.HUNG
+
+
+def test_a_case_by_its_sign_ahead_of_a_shelf() -> None:
+    assert case_in("CG-12 / glass shelf B") == "CG-12"
+    assert case_in("armoire 3, étagère 2") == "armoire 3"
+    assert case_in("玻璃柜4，托架上") == "玻璃柜4"

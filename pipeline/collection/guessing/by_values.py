@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, internal
-from pipeline.collection.guessing.names import named
+from pipeline.collection.guessing.names import DESCRIPTION, named
 from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
 from pipeline.tables.material_words import folded, material_words
@@ -71,13 +71,18 @@ def _likeliest(columns: Sequence[Column], used: Iterable[Column], share: Callabl
         (share(one), -one.length, one)
         for one in columns
         if id(one) not in taken
-        and named(one.name) is None
+        and (named(one.name) is None or (share is materials and _describes(one)))
         and len(one.distinct) >= _FEWEST
         and not (one.measured or one.of_machine or one.prose or one.pictured > _MOSTLY or one.dimensional > _MOSTLY)
         and placed(one) < _MOSTLY
     ]
     best = max(able, key=lambda one: one[:2], default=None)
     return best[2] if best is not None and best[0] >= _MOSTLY else None
+
+
+def _describes(column: Column) -> bool:
+    what = named(column.name)
+    return what is not None and what.field == DESCRIPTION
 
 
 def _share(column: Column, says: Callable[[str], bool]) -> float:

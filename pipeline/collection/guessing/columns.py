@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from statistics import median
@@ -17,7 +17,6 @@ from pipeline.collection.guessing.names import (
     LENGTH,
     TEXTS,
     ColumnMeaning,
-    bare,
     complements,
     is_code,
     is_length,
@@ -25,6 +24,7 @@ from pipeline.collection.guessing.names import (
     tells_material,
     unit_in,
 )
+from pipeline.collection.guessing.short_heads import short_heads
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.image_names import first_of, is_image_name
 from pipeline.collection.sources.measurement_terms import kind_within, unit_of
@@ -228,8 +228,8 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
         Fields of the record, `names.TEXTS` among them.
     """
     said = {id(column): named(column.name) for column in columns}
-    for column, meant in (*_turkish(columns, said), *_letters(columns, said)):
-        said[id(column)] = meant
+    open_ = {id(column): column.name for column in columns if said[id(column)] is None and column.measured}
+    said.update(short_heads(open_, {what.field for what in said.values() if what is not None}))
     found: dict[str, list[tuple[ColumnMeaning, Column]]] = {}
     for column in columns:
         what = said[id(column)]
@@ -330,51 +330,6 @@ def internal(column: Column) -> bool:
     """Whether a column's name is that of a number that only a database knows."""
     what = named(column.name)
     return what is not None and what.internal
-
-
-def _last(name: str) -> str:
-    """Return the letter below a word for sizes, "h" of "size.h"; else the name itself."""
-    above, point, last = name.rpartition(".")
-    sizes = named(above) if point and len(last) == 1 else None
-    return last if sizes is not None and sizes.field == TEXTS else name
-
-
-def _letters(columns: Sequence[Column], said: Mapping[int, ColumnMeaning | None]) -> list[tuple[Column, ColumnMeaning]]:
-    """Return what single letters mean beside each other: L is a width beside H and P, a length beside H and B."""
-    short = {_last(bare(c.name).strip(" .:")): c for c in columns if said[id(c)] is None and c.measured}
-    short = {
-        letter: column for letter, column in short.items() if (len(letter) == 1 and letter.isalpha()) or letter == "Ø"
-    }
-    if not short:
-        return []
-    folded = {letter.casefold() for letter in short}
-    told = {what.field for what in said.values() if what is not None}
-    if not folded & {"h", "l", "b", "w"} or not (len(folded) > 1 or told & {"height_m", "width_m"}):
-        return []
-    out = []
-    for letter, column in short.items():
-        meaning = {"h": "height_m", "w": "width_m", "b": "width_m", "t": "depth_m", "p": "depth_m", "ø": "diameter_m"}
-        name = meaning.get(letter.casefold())
-        if letter.casefold() == "l":
-            both = "l" in short and "L" in short
-            name = LENGTH if folded & {"b", "w"} or (both and letter == "L") else "width_m"
-        elif letter.casefold() == "d":
-            name = "depth_m" if folded & {"b", "w"} and not folded & {"t", "p"} else "diameter_m"
-        if name is not None:
-            out.append((column, ColumnMeaning(name, 99)))
-    return out
-
-
-def _turkish(columns: Sequence[Column], said: Mapping[int, ColumnMeaning | None]) -> list[tuple[Column, ColumnMeaning]]:
-    """Return what "En" and "Boy" mean beside each other: width, and the height, or else the length."""
-    short = {bare(one.name).casefold(): one for one in columns if said[id(one)] is None and one.measured}
-    if not {"en", "boy"} <= short.keys():
-        return []
-    upright = any(what is not None and what.field == "height_m" for what in said.values())
-    return [
-        (short["en"], ColumnMeaning("width_m", 99)),
-        (short["boy"], ColumnMeaning(LENGTH if upright else "height_m", 99)),
-    ]
 
 
 def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> list[Column]:

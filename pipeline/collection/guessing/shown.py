@@ -100,6 +100,11 @@ def words_of_display(columns: Sequence[Column], found: dict[str, Column], told: 
     if "displayed" not in found and mounts is not None and "support" not in told.choices and tells_display(mounts):
         found["displayed"] = found.pop("support")
         told.doubts.append(f"column {mounts.name!r} is taken to say in words how objects are displayed or held")
+    medium = found.get("medium")
+    if "displayed" not in found and medium is not None and "medium" not in told.choices and _holds_ways(medium):
+        # "Suporte" is what a picture is painted on, and "suporte expositivo" what a thing stands in.
+        found["displayed"] = found.pop("medium")
+        told.doubts.append(f"column {medium.name!r} is taken to say in words how objects are displayed or held")
     if not {"displayed", "support"} & {*found, *told.choices}:
         _cases_and_spots(found, told)
     if not {"displayed", "support"} & {*found, *told.choices}:

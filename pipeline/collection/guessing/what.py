@@ -98,8 +98,10 @@ def named_by(
         return None
     if describing(able, title) is not None:
         return title
-    if filled.intersection(SAYING):
-        return None
+    said = filled.intersection(SAYING)
+    if said:
+        # Beside a material alone most titles may name things: "Glava cara; mramor".
+        return title if said <= {"medium", "material"} and _names_things(title.filled[:_SOME]) else None
     return title if _bodily(able.get(TEXTS) or able.get(DESCRIPTION, ()), filled, title) else None
 
 
