@@ -14,6 +14,7 @@ from pipeline.tables.ideographs import shortened_signs
 from pipeline.tables.rows import Entries, checked
 
 _SEGMENTS = re.compile(r"[,;>/|:()\[\]\u2013\u2014]|\s-\s")
+_EACH = re.compile(r"\s*[/|]\s*")
 _BETWEEN = re.compile(r"[\s_.\-\u2010\u2011]+")
 _CODE = re.compile(r"(?:no|nr|n°|nº)?[\w°º]{0,2}\d*[\w]?|\d[\w]*", re.IGNORECASE)
 _COMPOUND = re.compile(r"\w{3,}(?:depot|magazin|magasin|varasto|förråd)s?")
@@ -58,6 +59,10 @@ def flag_of(text: str, *, display: bool = False) -> bool | None:
     bool or None
         None for words that are not known.
     """
+    both = [flag_of(part, display=display) for part in _EACH.split(text)] if _EACH.search(text) else []
+    if both and both[0] is not None and set(both) == {both[0]}:
+        # "Oui / Yes": the same in each of a museum's languages.
+        return both[0]
     folded, meant = _folded(text), _meant()
     if folded in meant["yes"] or folded in meant["no"]:
         return folded in meant["yes"]

@@ -65,6 +65,7 @@ from pipeline.collection.mapping import MAPPABLE, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.places import parted
 from pipeline.collection.sources.address import expand_secrets
+from pipeline.collection.sources.headings import HEADING
 from pipeline.collection.sources.registry import is_address
 
 MOST_REPEATED = 0.1
@@ -195,9 +196,11 @@ def _check_choices(choices: Mapping[str, str]) -> None:
             )
 
 
-def _places_of_cases(found: dict[str, Column], told: GuessNotes) -> None:
+def _places_of_cases(found: dict[str, Column], columns: Sequence[Column], told: GuessNotes) -> None:
     """Take a column of cases for the places too, where no column is of places and it names more than cases' signs."""
     cases = found.get("case")
+    if any(one.name == HEADING for one in columns):
+        return
     if cases is None or {"gallery", "case"} & {*found.keys() - {"case"}, *told.choices}:
         return
     if sum(parted(text).room != text for text in cases.distinct) >= 0.5 * len(cases.distinct) > 0:
@@ -211,7 +214,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     able = candidates(columns)
     _add_misspelt(columns, able, told)
     found = _chosen(name, columns, able, told)
-    _places_of_cases(found, told)
+    _places_of_cases(found, columns, told)
     headed = place_by_heading(found, columns) if "gallery" not in told.choices else ""
     told.doubts += [headed] * bool(headed)
     by_value = by_values(columns, found, told.choices)

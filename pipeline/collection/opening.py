@@ -14,7 +14,7 @@ from pipeline.collection.mapping import Mapping
 from pipeline.collection.record import KINDS
 from pipeline.collection.sources.base import HEAD, Opened, Request, Source
 from pipeline.collection.sources.files import head_of
-from pipeline.collection.sources.headings import under_headings
+from pipeline.collection.sources.headings import under_headings, without_heads
 from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import is_address, recognised, source_named
 
@@ -62,9 +62,9 @@ def open_source(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) 
     )
     long = mapping.source.long
     with source.open(request) as opened:
-        rows = opened.rows
+        rows = without_heads(opened.rows)
         if getattr(mapping.source, "headings", False):
-            rows = under_headings(rows, opened.name)
+            rows = under_headings(rows, opened.name, getattr(mapping.source, "first_heading", ""))
         yield replace(opened, rows=rows if long is None else gathered(rows, long, opened.name))
 
 

@@ -17,6 +17,20 @@ _ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
 _SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS."""
 
+_NOTHING_BEHIND = re.compile(r"\s*[,;/>|]\s*[-–—.]*\s*$")
+"""What stands for a case that a place has not: "Gartensaal / –"."""
+_OF_WALLS = re.compile(
+    r"(?:Wand|wall|mur|parete|pared|parede|muur|ściana|stěna|стена|τοίχος|duvar|vägg|væg|seinä|perete|zid)\s+"
+    r"(?:[nsewo]|nord|süd|ost|west|sud|est|ouest|ovest|norte|sur|este|oeste|noord|zuid|oost|\d{1,2}|[a-d])"
+    r"|(?:north|south|east|west|left|right|back|end|[nsew])\.? wall|(?:Nord|Süd|Ost|West|Stirn|Längs|Rück)wand",
+    re.IGNORECASE,
+)
+"""One of a room's walls, where a table stands and a picture hangs: no part of the room's name."""
+_CODES = re.compile(
+    r"([A-Z]{1,3}\d{1,3})[.\-_/](?:(?P<case>(?:C|CASE|V|VIT|SC)\d{1,3}(?:[.\-_/][A-Z]{1,3}\d{1,3}){0,2})"
+    r"|(?P<spot>(?:P|PL|W|WL|F|FL)\d{1,3}))"
+)
+"""A place by its signs: the room, and a case with a shelf in it or a spot, G12.C03.S2 and G12.P01."""
 _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
 """A case by its sign alone, ahead of a shelf in it: CG-12."""
 
@@ -54,9 +68,13 @@ def parted(text: str) -> NamedPlace:
     """
     if len(text) > LONGEST:
         return NamedPlace(text)
+    coded = _CODES.fullmatch(text)
+    if coded:
+        return NamedPlace(coded[1], coded["case"] or "", coded["spot"] or "")
     enclosed = _ENCLOSED.fullmatch(text)
     if enclosed and _tells(enclosed[2]):
         return NamedPlace(enclosed[1], displayed=enclosed[2])
+    text = _NOTHING_BEHIND.sub("", text)
     ends = [found.span() for found in _SEPARATOR.finditer(text)]
     spans = list(zip((0, *(end for _, end in ends)), (*(start for start, _ in ends), len(text)), strict=True))
     if len(spans) > 1 and says_shown(text[: spans[0][1]]):
@@ -128,7 +146,7 @@ def beside_case(text: str) -> str:
 
 def _tells(piece: str) -> bool:
     told = told_by(piece)
-    return told.support is not None or told.furniture is not None
+    return _OF_WALLS.fullmatch(piece.strip()) is not None or told.support is not None or told.furniture is not None
 
 
 @cache

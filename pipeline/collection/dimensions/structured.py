@@ -21,6 +21,8 @@ _ENTITY = re.compile(r"&(?:#\d{1,6}|#x[\da-f]{1,5}|[a-z]{2,8}\d{0,2});", re.IGNO
 _OPENS = re.compile(r"\s*[\[{]\s*[\[{\"']")
 _LISTED = re.compile(r"\s*\[\s*[{\"'].*[}\"']\s*\]\s*\Z", re.DOTALL)
 _FIGURE = re.compile(r"\d{1,6}(?:[.,]\d{1,6})?", re.ASCII)
+_SLASHED = re.compile(r"\s*\d+(?:[.,]\d+)?(?:\s*/\s*(?:\d{1,3}(?:[.,]\d+)?|[-–—])){2}\s*", re.ASCII)
+"""All three sides and nothing else, "62/31/31" and "310/420/–"; four figures at the end are a year."""
 _TOLD = 3
 _FORM = 2
 """Labels with units from which a text is a form."""
@@ -48,7 +50,7 @@ def plain_text(text: str) -> str:
     text : str
         Of the cell: `[{"dimension": "Height", "value": "24.5", "unit": "cm", "part": ""}]`, the same as Python writes
         it, `{"height": 450, "width": 320, "unit": "mm"}`, `{"framed": {"height": 0.6, "width": 0.5}}`, a form such as
-        `Altura (cm): 24,5 Largura (cm): Peso (g): 30`, or any text.
+        `Altura (cm): 24,5 Largura (cm): Peso (g): 30`, three numbers such as `62/31/31`, or any text.
 
     Returns
     -------
@@ -58,6 +60,8 @@ def plain_text(text: str) -> str:
     if len(text) > LONGEST:
         return text
     text = _ENTITY.sub(_unescaped, text)
+    if _SLASHED.fullmatch(text):
+        return " x ".join(part for part in map(str.strip, text.split("/")) if part[0].isdigit())
     if not _OPENS.match(text):
         return _filled_in(text)
     found = _parsed(text.strip())

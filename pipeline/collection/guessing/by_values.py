@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, internal
-from pipeline.collection.guessing.names import DESCRIPTION, named
+from pipeline.collection.guessing.names import DESCRIPTION, TEXTS, named
 from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
 from pipeline.tables.material_words import folded, material_words
@@ -78,6 +78,11 @@ def _likeliest(columns: Sequence[Column], used: Iterable[Column], share: Callabl
     ]
     best = max(able, key=lambda one: one[:2], default=None)
     return best[2] if best is not None and best[0] >= _MOSTLY else None
+
+
+def _of_sizes(column: Column) -> bool:
+    what = named(column.name)
+    return what is not None and what.field == TEXTS and column.sized > _MOSTLY
 
 
 def _describes(column: Column) -> bool:
@@ -161,7 +166,7 @@ def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column])
             dated = _dated(one) >= _MOSTLY
             number = one.numbering and not dated
             return (
-                one.dimensional > _MOSTLY,
+                one.dimensional > _MOSTLY or _of_sizes(one),
                 sentences or dated,
                 id(one) in fields,
                 not number,

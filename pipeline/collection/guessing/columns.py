@@ -34,7 +34,7 @@ from pipeline.errors import InputError
 NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
-_SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d|\d\s*[×*]\s*\d", re.DOTALL)
+_SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d|\d\s*[×*]\s*\d|\d\s*/\s*\d+[.,]?\d*\s*/\s*[\d–-]", re.DOTALL)
 BOTH = 0.05
 """How many objects with both of two sizes there may be for each that has one alone (judgement)."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from pipeline.collection.display_words import says_away
@@ -15,17 +16,21 @@ from pipeline.collection.sources.sheets import SHEET
 FEWEST = 2
 """Headings from which a list is taken to have some; one alone may be a remark."""
 
+_FIGURES = re.compile(r"\d+")
+
 _MOST = 0.5
 """Share of the rows that headings are at most."""
 
 
-def has_headings(rows: Sequence[Row]) -> bool:
+def has_headings(rows: Sequence[Row], first: str = "") -> bool:
     """Say whether rows that hold one text alone head those below them, and name places.
 
     Parameters
     ----------
     rows : sequence of Row
         Of a table, without its header.
+    first : str
+        What stands alone above the header.
 
     Returns
     -------
@@ -35,6 +40,12 @@ def has_headings(rows: Sequence[Row]) -> bool:
     texts = [
         first_text(row) for row, one, below in zip(rows, alone, [*alone[1:], True], strict=False) if one and not below
     ]
+    # A title above the names of the columns is a heading where one below is like it: Gallery 1, and Gallery 2.
+    texts += (
+        [first]
+        if first and any(_FIGURES.sub("0", one).split()[:2] == _FIGURES.sub("0", first).split()[:2] for one in texts)
+        else []
+    )
     places = sum(map(_names_place, texts))
     return FEWEST <= len(texts) <= _MOST * len(rows) and places >= FEWEST and 2 * places >= len(texts)
 

@@ -75,6 +75,7 @@ _SIDE = re.compile(r"([^(（\[]+)[(（\[]([^)）\]]+)[)）\]]")
 """The name of a column that says in brackets what of something it is."""
 LEGEND = re.compile(
     r"(?<![^\W_])(?:(?:[^\W\d_x×]{1,2}\.?\s*[x×]\s*){1,2}[^\W\d_x×]{1,2}(?![^\W_])"
+    r"|(?:[^\W\d_x×]{1,2}\.?\s*/\s*){2}[^\W\d_x×]{1,2}(?![^\W_])"
     r"|(?:[^\W\d_]+\.?(?:\s+x\s+|\s*×\s*)){1,2}[^\W\d_]+)",
     re.IGNORECASE,
 )

@@ -34,7 +34,7 @@ from pipeline.collection.opening import open_source
 from pipeline.collection.sources.dumps import dump_as_database
 from pipeline.collection.sources.files import head_of, unreadable
 from pipeline.collection.sources.folders import Folder, files_in
-from pipeline.collection.sources.headings import HEADING, under_headings
+from pipeline.collection.sources.headings import HEADING, first_text, is_heading, under_headings
 from pipeline.collection.sources.json_objects import Json
 from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
 from pipeline.collection.sources.long_form import gathered
@@ -343,10 +343,23 @@ def columns_in(path: Path, source: dict[str, Any]) -> list[Column]:
         if source["format"] not in _HEADED:
             return _filled(path.name, opened.rows)
         some = list(islice(opened.rows, READ + 1))
-    if has_headings(some[1:]) and HEADING not in map(str.strip, some[0].cells):
+    first = _above_the_names(path, source) if some and source.get("header_row", 1) > 1 else ""
+    if has_headings(some[1:], first) and HEADING not in map(str.strip, some[0].cells):
         source["headings"] = True
-        some = list(under_headings(iter(some), path.name))
+        if first and not is_heading(some[1]):
+            source["first_heading"] = first
+        some = list(under_headings(iter(some), path.name, source.get("first_heading", "")))
     return _filled(path.name, iter(some))
+
+
+def _above_the_names(path: Path, source: dict[str, Any]) -> str:
+    """Return the one text of the row above the names of the columns, as a room's name; "" where there is none."""
+    with open_source(
+        path, _plain_mapping(source | {"header_row": source["header_row"] - 1, "header_rows": 1})
+    ) as above:
+        row = next(above.rows, None)
+    alone = row is not None and sum(bool(cell.strip()) for cell in row.cells) == 1
+    return first_text(row)[:200] if row is not None and alone else ""
 
 
 def _plain_mapping(source: Mapping[str, Any]) -> Proposal:

@@ -40,8 +40,8 @@ _SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8
 
 _NAMED = re.compile(
     rf"(?P<before>^|[\s_,;:/{re.escape(_OPEN + _CLOSE)}]+|(?<=[{_SIGNS}]))"
-    r"(?P<by>(?:in|en|em|i|w|v|ve|в|у|σε)\s+)?"
-    rf"(?P<word>[^\W\d_{_SIGNS}]+|[{_SIGNS}]+|[\"″”])\.?"
+    r"(?P<by>(?:in|en|em|i|w|v|ve|в|у|σε)\s+|ב(?=[א-ת]+[\"״]))?"
+    rf"(?P<word>[א-ת]+[\"״][א-ת]|[^\W\d_{_SIGNS}]+|[{_SIGNS}]+|[\"″”])\.?"
     rf"(?=\s*(?P<after>$|[,;:{re.escape(_OPEN + _CLOSE)}]))",
     re.IGNORECASE,
 )

@@ -319,6 +319,11 @@ class HeadedSettings(SourceSettings):
         description="Rows that hold one text alone, such as a room's name across a list, head the rows below them: "
         'the column "heading" has it for each of these.',
     )
+    first_heading: str = Field(
+        default="",
+        max_length=200,
+        description="The heading of the rows above the first of them, where it stands above the names of the columns.",
+    )
     sideways: bool = Field(
         default=False,
         description="Objects stand side by side: each column is one, and the first cell of each row names a field.",

@@ -52,7 +52,32 @@ def is_heading(row: Row) -> bool:
     )
 
 
-def under_headings(rows: Iterator[Row], file: str) -> Iterator[Row]:
+def without_heads(rows: Iterator[Row]) -> Iterator[Row]:
+    """Yield the header and the rows; one that repeats the names of the columns, as above each page, is no object.
+
+    Parameters
+    ----------
+    rows : iterator of Row
+        The header first.
+
+    Yields
+    ------
+    Row
+    """
+    header = next(rows, None)
+    if header is None:
+        return
+    yield header
+    names = [name.strip() for name in header.cells]
+    first = next(filter(None, names), "")
+    for row in rows:
+        if first_text(row) == first and [cell.strip() for cell in row.cells] == names:
+            yield row._replace(fault=("repeats the names of the columns", "leave it out"), faults={})
+        else:
+            yield row
+
+
+def under_headings(rows: Iterator[Row], file: str, first: str = "") -> Iterator[Row]:
     """Yield the header and the rows with HEADING behind them; a heading is no row, but where no row stands below it.
 
     What differs from the number of an object above it in figures alone is one too: A 3 below A 2.
@@ -63,6 +88,8 @@ def under_headings(rows: Iterator[Row], file: str) -> Iterator[Row]:
         The header first.
     file : str
         The source's name in messages.
+    first : str
+        The heading of the rows above the first one: a title above the names of the columns.
 
     Yields
     ------
@@ -82,7 +109,7 @@ def under_headings(rows: Iterator[Row], file: str) -> Iterator[Row]:
             f"{file}: has a column {HEADING!r} of its own; rename it, or leave [source] headings out of the mapping"
         )
     yield header._replace(cells=[*header.cells, HEADING])
-    above, waiting = "", None
+    above, waiting = first, None
     numbers: set[str] = set()
     for row in rows:
         if is_heading(row) and _shape(row) not in numbers:
@@ -129,6 +156,8 @@ def heads_or_sums(row: Row, number: str, beside: Set[int]) -> str:
     """
     if beside and beside <= row.faults.keys() and is_heading(row):
         return "is merged across all columns: a heading"
+    if _SUM.fullmatch(number.strip(" :.")):
+        return "sums the others up"
     if not beside or any(any(map(str.isalpha, row.cells[at])) for at in beside):
         return ""
     if not any(map(str.isnumeric, number)):
