@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from math import hypot, radians
 
+from pipeline.analysis.footing import on_wheels
 from pipeline.analysis.house.matching import HouseEffect
 from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Anchorage, Estimate, Furniture, Item, Origin, Scene, Support
@@ -54,6 +55,8 @@ WHAT_HANGS = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what han
 """What is said of furniture to be usual for, where it is so for whatever hangs."""
 IN_THE_OPEN = "what stands in the open"
 """The same of whatever stands in a garden, a court, on a terrace."""
+ON_WHEELS = "what stands on wheels"
+"""The same of what would stand on a pedestal, and rolls."""
 _OPEN = any_of([
     *("garden", "gardens", "courtyard", "patio", "terrace", "grounds", "outdoors", "outside", "forecourt", "car park"),
     *("lawn", "sculpture park", "foreshore", "Garten", "Innenhof", "Hof", "Vorplatz", "Außengelände", "im Freien"),
@@ -202,6 +205,9 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
     if row.furniture in _CASES and not hangs and in_the_open(item.gallery):
         words = f"assumed for: {IN_THE_OPEN}, usual_furniture.csv; not recorded"
         return FurnitureGuess(Furniture.FLOOR, Origin.ASSUMED, words, "judgement: no case stands under the sky")
+    if row.furniture is Furniture.PEDESTAL and not hangs and on_wheels(item, object_class) is not None:
+        words = f"assumed for: {ON_WHEELS}, usual_furniture.csv; not recorded"
+        return FurnitureGuess(Furniture.FLOOR, Origin.ASSUMED, words, "judgement: nothing rolls about on a pedestal")
     about = "what stands" if row.object_class == ANY else object_class.replace("_", " ")
     from_ = f" from {row.taller_than:g} m on" if row.taller_than else ""
     about = WHAT_HANGS.get(support, about)
