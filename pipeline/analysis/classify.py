@@ -216,7 +216,7 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     builder = SceneParameters(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:
-        builder.missing.extend(_unheld(as_it_stands(stance.taken, shape), support))
+        builder.missing.extend(_unheld(as_it_stands(stance.taken, shape), row.name, support))
     if support is Support.ISOLATED and item.isolator != FRICTION_ISOLATOR.name:
         # Its record has no numbers of springs: as if it stood on the floor it would be told to be off display.
         builder.missing.append(UNTOLD_ISOLATOR)
@@ -282,11 +282,11 @@ def unclassified(item: Item) -> Scene:
     return Scene(item, "object", "", item.support or Support.FREESTANDING, (), {})
 
 
-def _unheld(item: Item, support: Support) -> list[str]:
+def _unheld(item: Item, object_class: str, support: Support) -> list[str]:
     """Say that the support is missing where a thing is too thin to stand and nothing tells how it is held."""
     if item.support is not None or support is not Support.FREESTANDING:
         return []
-    times = too_slender(item)
+    times = too_slender(item, object_class)
     return [too_thin(times)] if times else []
 
 
