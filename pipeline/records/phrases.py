@@ -137,6 +137,9 @@ LOOSE_STATED = Clause("not fastened, by the house rule for {rule}")
 LOOSE_TAKEN = Clause("taken as not fastened, which nobody says")
 FURNITURE_DAMPING = Clause("damping of its furniture: {damping:-}, {table} for {furniture}")
 FURNITURE_LEVEL = Clause("level: off by up to {angle:°} either way, {table} for {furniture}")
+FLOOR_SLOPES = Clause(
+    "level: off by up to {angle:°} either way, for its floor is said to slope: measure it, or wedge it level"
+)
 FURNITURE_HALF_WIDTH = Clause("from the middle of its base to its edge: {span:m}, {table} for {furniture}")
 FURNITURE_CG = Clause("height of its centre of gravity: {span:m}, {table} for {furniture}")
 FURNITURE_FRICTION = Clause("friction on its floor: {span:-}, {table} for {furniture}")
