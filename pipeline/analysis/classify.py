@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import NamedTuple
 
-from pipeline.analysis.bodies import as_it_stands, body, on_floor
+from pipeline.analysis.bodies import as_it_stands, body, of_pieces, on_floor
 from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of, taken_of
 from pipeline.analysis.furniture import furniture_of, in_furniture
 from pipeline.analysis.house.matching import NO_EFFECT, HouseEffect, HouseRules
@@ -27,7 +27,7 @@ from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin,
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, ObjectClass
-from pipeline.tables.body_rows import PAIR, STACK, BodyRow
+from pipeline.tables.body_rows import BodyRow
 
 
 class TakenClass(NamedTuple):
@@ -89,9 +89,6 @@ def _why(read: Readings, taken: Chance) -> str:
             return str(one.words)
     return f"evidence: {WEIGHED}"
 
-
-_AS_ONE = {PAIR: say.TWO_BODIES, STACK: say.STACKED}
-"""What is said of bodies that are several and are followed as one."""
 
 FIXED = "fixed-post:"
 """How the reason of a class begins by whose rule a thing stands fixed in a footing."""
@@ -236,8 +233,9 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         if stance.taken.support is not None:
             phrase = say.SUPPORT_FIXED(support=support.value)
         assumptions.insert(0, f"{phrase}; {say.NOT_RECORDED()}")
-    if shape is not None and shape.body in _AS_ONE:
-        assumptions.insert(0, _AS_ONE[shape.body]())
+    several = of_pieces(item, shape, support, mount)
+    if several:
+        assumptions.insert(0, several)
     told = tuple(dict.fromkeys((*display_note(item, support), *assumptions)))
     scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)

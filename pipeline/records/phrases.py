@@ -26,6 +26,10 @@ STACKED = Clause(
     "it is a stack, whose pieces are followed as one body: where nothing holds them together, the upper ones slide "
     "and rock on those below, and fall sooner"
 )
+PIECES = Clause(
+    "it is several pieces in one record, taken as one body of the size recorded: a piece that is tall for its base "
+    "falls sooner, so record the tallest of them with its own sizes"
+)
 HEAVY_FOR_FURNITURE = Clause(
     "at {mass:kg~2} it is heavier than {furniture} mostly bears ({bears:kg~2}, judgement): have somebody say what "
     "bears it"

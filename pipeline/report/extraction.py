@@ -22,6 +22,7 @@ from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
 from pipeline.mitigate.saying import (
     ANCHORED,
+    EACH_PIECE,
     ENGINEER,
     HEAVIEST,
     HELD_FIRST,
@@ -111,6 +112,7 @@ def _of_measures() -> Iterator[str]:
         OF_MEAN,
         ANCHORED,
         NAMED_FIRST,
+        EACH_PIECE,
         UPPER_FIRST,
         HELD_FIRST,
     )

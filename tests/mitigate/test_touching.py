@@ -11,7 +11,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.response import respond
 from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED, HARMLESS
-from pipeline.mitigate.saying import ANCHORED
+from pipeline.mitigate.saying import ANCHORED, EACH_PIECE
 from pipeline.quantities import G
 from pipeline.records import Anchorage, Furniture, Item, Motion, Support
 from pipeline.report.pages.plainly import plain_measure
@@ -174,6 +174,15 @@ def test_a_part_of_a_vehicle_does_not_roll(name: str, height: float) -> None:
     part = Item("1", "G", "Racing car", object_name=name, medium="brass", height_m=height, width_m=0.1, depth_m=0.1,
                 displayed="on pedestal")  # fmt: skip
     assert classify(part).parameters["friction_static"].value > 0.11
+
+
+def test_what_is_done_to_a_service_is_done_to_each_piece(motion: Motion) -> None:
+    service = Item("1", "G", "Tea service", object_name="tea service", medium="porcelain", height_m=0.35, width_m=0.1,
+                   depth_m=0.1, mass_kg=2.0, displayed="on floor", friction=0.6)  # fmt: skip
+    advice = solve(service, motion)
+    assert advice.sentence.startswith(EACH_PIECE)
+    assert EACH_PIECE not in solve(replace(service, title="Teapot", object_name="teapot"), motion).sentence
+    assert "each of its pieces" in plain_measure(advice, Units("cm"))
 
 
 def test_what_rolls_stands_on_the_floor() -> None:
