@@ -8,7 +8,8 @@ from pipeline.records import Estimate, Furniture, Item, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import READ
 from pipeline.tables.assumed_rows import Material, ObjectClass
-from pipeline.tables.body_rows import ON_EDGE, PAIR, SCREEN, STANDS, BodyRow, body_of
+from pipeline.tables.body_rows import ON_EDGE, PAIR, SCREEN, STACK, STANDS, BodyRow, body_of
+from pipeline.tables.rows import any_of
 
 SOFT = ("inflated", "feathers")
 """Materials of which rocking harms nothing: judgement."""
@@ -23,6 +24,55 @@ _FOOT = (0.25, 0.12, 0.4)
 LEAF, FLAT = 0.05, 0.2
 """Depth over height below which the recorded depth of a folding screen is that of one leaf, and that of a thing on a
 stand is its own and not that of the stand: judgement."""
+
+
+_STACKED = any_of([
+    *("stacked", "in stacks", "in a stack", "piled", "in a pile", "one on top of *other", "one on top of another"),
+    *("one upon *other", "one above the other on top", "on top of each other", "gestapelt", "aufeinander", "im Stapel"),
+    *("empilé", "empilés", "empilée", "empilées", "superposés", "superposées", "les uns sur les autres", "en pile"),
+    *("impilati", "impilate", "sovrapposti", "sovrapposte", "uno sopra l'altro", "una sopra l'altra", "apilados"),
+    *("apiladas", "superpuestos", "superpuestas", "uno sobre otro", "una sobre otra", "empilhados", "empilhadas"),
+    *("gestapeld", "op elkaar", "staplade", "ustawione jeden na drugim", "στοιβαγμένα", "το ένα πάνω στο άλλο"),
+    *("積み重ね", "重ねて", "叠放", "疊放", "쌓아"),
+])  # fmt: skip
+"""What says of a display that its things stand on each other."""
+
+_PIECES = any_of([
+    *("chess set", "chess sets", "chessmen", "chess pieces", "Schachspiel", "Schachfiguren", "jeu d'échecs", "scacchi"),
+    *("juego de ajedrez", "tea service", "tea set", "coffee service", "coffee set", "dinner service", "dinner set"),
+    *("dessert service", "breakfast service", "toilet service", "dressing table set", "cruet set", "Teeservice"),
+    *("Kaffeeservice", "Tafelservice", "Speiseservice", "service à thé", "service à café", "service de table"),
+    *("servizio da tè", "servizio da caffè", "servizio da tavola", "servicio de té", "juego de té", "juego de café"),
+    *("vajilla", "serviço de chá", "serviço de jantar", "theeservies", "koffieservies", "eetservies", "serwis do kawy"),
+    *("nativity set", "nativity scene", "presepe", "Weihnachtskrippe", "crèche de Noël", "toy soldiers"),
+    *("Zinnsoldaten", "σερβίτσιο", "чайный сервиз", "茶器セット", "チェスセット"),
+])  # fmt: skip
+"""What names many pieces that stand beside each other."""
+
+
+def of_pieces(item: Item, shape: BodyRow | None, support: Support, mount: MountGuess | None) -> str:
+    """Return what is said of things that are several and are followed as one, of what stands; "" of others.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    shape : BodyRow or None
+        What is known of its shape.
+    support, mount : Support, MountGuess or None
+        How it is held.
+    """
+    if shape is not None and shape.body in _AS_ONE:
+        return _AS_ONE[shape.body]()
+    if support is not Support.FREESTANDING or (mount is not None and not mount.stands):
+        return ""
+    if _STACKED.search(item.displayed):
+        return say.STACKED()
+    return say.PIECES() if _PIECES.search(f"{item.object_name[:READ]}; {item.title[:READ]}") else ""
+
+
+_AS_ONE = {PAIR: say.TWO_BODIES, STACK: say.STACKED}
+"""What is said of bodies that are several and are followed as one."""
 
 
 def stands_deep(shape: BodyRow) -> Callable[[float], Estimate] | None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import NamedTuple
 
-from pipeline.analysis.bodies import as_it_stands, body, on_floor
+from pipeline.analysis.bodies import as_it_stands, body, of_pieces, on_floor
 from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of, taken_of
 from pipeline.analysis.furniture import furniture_of, in_furniture
 from pipeline.analysis.house.matching import NO_EFFECT, HouseEffect, HouseRules
@@ -27,7 +27,7 @@ from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin,
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, ObjectClass
-from pipeline.tables.body_rows import PAIR, STACK, BodyRow
+from pipeline.tables.body_rows import BodyRow
 
 
 class TakenClass(NamedTuple):
@@ -89,9 +89,6 @@ def _why(read: Readings, taken: Chance) -> str:
             return str(one.words)
     return f"evidence: {WEIGHED}"
 
-
-_AS_ONE = {PAIR: say.TWO_BODIES, STACK: say.STACKED}
-"""What is said of bodies that are several and are followed as one."""
 
 FIXED = "fixed-post:"
 """How the reason of a class begins by whose rule a thing stands fixed in a footing."""
@@ -216,7 +213,7 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     builder = SceneParameters(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:
-        builder.missing.extend(_unheld(as_it_stands(stance.taken, shape), support))
+        builder.missing.extend(_unheld(as_it_stands(stance.taken, shape), row.name, support))
     if support is Support.ISOLATED and item.isolator != FRICTION_ISOLATOR.name:
         # Its record has no numbers of springs: as if it stood on the floor it would be told to be off display.
         builder.missing.append(UNTOLD_ISOLATOR)
@@ -236,8 +233,9 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         if stance.taken.support is not None:
             phrase = say.SUPPORT_FIXED(support=support.value)
         assumptions.insert(0, f"{phrase}; {say.NOT_RECORDED()}")
-    if shape is not None and shape.body in _AS_ONE:
-        assumptions.insert(0, _AS_ONE[shape.body]())
+    several = of_pieces(item, shape, support, mount)
+    if several:
+        assumptions.insert(0, several)
     told = tuple(dict.fromkeys((*display_note(item, support), *assumptions)))
     scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
     return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
@@ -282,11 +280,11 @@ def unclassified(item: Item) -> Scene:
     return Scene(item, "object", "", item.support or Support.FREESTANDING, (), {})
 
 
-def _unheld(item: Item, support: Support) -> list[str]:
+def _unheld(item: Item, object_class: str, support: Support) -> list[str]:
     """Say that the support is missing where a thing is too thin to stand and nothing tells how it is held."""
     if item.support is not None or support is not Support.FREESTANDING:
         return []
-    times = too_slender(item)
+    times = too_slender(item, object_class)
     return [too_thin(times)] if times else []
 
 

@@ -145,7 +145,8 @@ class Bearing(BaseModel):
     """How much of the base that is assumed of an object may really bear (a row of tables/contacts.csv).
 
     words   : in an object's name, title, medium or display, by which it is known; * is up to three words
-    classes : else the classes of which it is assumed
+    classes : with words the classes whose words they are, () for any; else those of which it is assumed
+    taller_than : height from which its words count [m]: a mascot of a car does not roll
     rolling : friction that keeps it from rolling away [-], None where it does not roll
     """
 
@@ -153,6 +154,7 @@ class Bearing(BaseModel):
     title: str
     words: Entries
     classes: Entries
+    taller_than: Number = Field(ge=0.0)
     share: Number = Field(gt=0.0, le=1.0)
     low: Number = Field(gt=0.0)
     high: Number = Field(le=1.0)
@@ -213,35 +215,49 @@ def bearing_of(item: Item, object_class: str) -> Bearing | None:
     Bearing or None
         None for a class of which no base is assumed.
     """
-    return _named(item) or next((row for row in bearings() if object_class in row.classes), None)
+    assumed = (row for row in bearings() if object_class in row.classes and not row.words)
+    return _named(item, object_class) or next(assumed, None)
 
 
-def rolling(item: Item) -> Bearing | None:
+def rolling(item: Item, object_class: str) -> Bearing | None:
     """Return on what an object rolls away, by its words; None for what does not, or is said to be kept from it.
 
     Parameters
     ----------
     item : Item
         Its record.
+    object_class : str
+        Row of tables/classes.csv.
     """
-    found = _named(item)
-    return None if found is None or found.rolls is None or _KEPT.search(item.displayed) else found
+    found = on_wheels(item, object_class)
+    return None if found is None or _KEPT.search(item.displayed) else found
 
 
-def _named(item: Item) -> Bearing | None:
-    return _told("; ".join(text[:READ] for text in (item.object_name, item.title, item.medium, item.displayed)))
+def on_wheels(item: Item, object_class: str) -> Bearing | None:
+    """Return the wheels that an object stands on, kept from rolling or not; None of what has none: as `rolling`."""
+    found = _named(item, object_class)
+    return None if found is None or found.rolls is None else found
+
+
+def _named(item: Item, object_class: str) -> Bearing | None:
+    told = "; ".join(text[:READ] for text in (item.object_name, item.title, item.medium, item.displayed))
+    return _told(told, object_class, item.height_m or 0.0)
 
 
 # Asked of an object when it is classed, and by each measure that is tried on it.
 @lru_cache(maxsize=4096)
-def _told(text: str) -> Bearing | None:
-    return next((row for pattern, row in _patterns() if pattern.search(text)), None)
+def _told(text: str, object_class: str, height: float) -> Bearing | None:
+    for pattern, row in _patterns():
+        if (not row.classes or object_class in row.classes) and height >= row.taller_than and pattern.search(text):
+            return row
+    return None
 
 
 _KEPT = re.compile(
-    r"\b(?:chocked|chocks?|blocked|on (?:\w+ )?blocks|locked|brakes? on|off its wheels|in (?:castor|caster) cups|"
-    r"verkeilt|festgestellt|gebremst|aufgebockt|calée?s?|bloquée?s?|freinée?s?|bloccat[aeio]|frenat[aeio]|calzad[ao]s?|"
-    r"bloquead[ao]s?|frenad[ao]s?)\b",
+    r"\b(?:chocked|chocks?|blocked|on (?:\w+ )?blocks|locked|brakes? (?:is |are )?(?:on|set|applied)|off its wheels|"
+    r"in (?:castor|caster) cups|in gear|axle stands|jacked up|scotched|wheel stops?|buffer stops?|verkeilt|"
+    r"Hemmschuhe?n?|Unterlegkeile?n?|festgestellt|gebremst|aufgebockt|calée?s?|bloquée?s?|freinée?s?|bloccat[aeio]|"
+    r"frenat[aeio]|calzad[ao]s?|bloquead[ao]s?|frenad[ao]s?)\b",
     re.IGNORECASE,
 )
 """What is said of wheels that do not roll."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from math import hypot, radians
 
+from pipeline.analysis.footing import on_wheels
 from pipeline.analysis.house.matching import HouseEffect
 from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Anchorage, Estimate, Furniture, Item, Origin, Scene, Support
@@ -50,10 +51,22 @@ STANDS = (Support.FREESTANDING, Support.FASTENED, Support.ISOLATED)
 FLOOR_BEARS = 500.0
 """Load [kg/m2] that floors of museums are made for (5 kN/m2: EN 1991-1-1, C3)."""
 
+_SLOPES = re.compile(
+    r"\b(?:(?:sloping|uneven|sagging|tilted|inclined|unlevel) (?:\w+ )?(?:floor|ground|boards|flags)|"
+    r"floor (?:slopes|sags|is (?:not level|uneven|sloping))|(?:out of|off|not) level|"
+    r"(?:schief|schräg|uneben|geneigt)e[nmrs]? (?:Fuß)?[Bb]oden|sol (?:en pente|inégal|incliné)|"
+    r"pavimento (?:inclinato|in pendenza|irregolare|sconnesso)|(?:suelo|piso) (?:inclinado|desnivelado|irregular)|"
+    r"κεκλιμένο δάπεδο|ανισόπεδο δάπεδο)\b|傾いた床|床が傾|床の傾斜",
+    re.IGNORECASE,
+)
+"""What says of a floor that it is not level."""
+
 WHAT_HANGS = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what hangs from above"}
 """What is said of furniture to be usual for, where it is so for whatever hangs."""
 IN_THE_OPEN = "what stands in the open"
 """The same of whatever stands in a garden, a court, on a terrace."""
+ON_WHEELS = "what stands on wheels"
+"""The same of what would stand on a pedestal, and rolls."""
 _OPEN = any_of([
     *("garden", "gardens", "courtyard", "patio", "terrace", "grounds", "outdoors", "outside", "forecourt", "car park"),
     *("lawn", "sculpture park", "foreshore", "Garten", "Innenhof", "Hof", "Vorplatz", "Außengelände", "im Freien"),
@@ -202,6 +215,9 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
     if row.furniture in _CASES and not hangs and in_the_open(item.gallery):
         words = f"assumed for: {IN_THE_OPEN}, usual_furniture.csv; not recorded"
         return FurnitureGuess(Furniture.FLOOR, Origin.ASSUMED, words, "judgement: no case stands under the sky")
+    if row.furniture is Furniture.PEDESTAL and not hangs and on_wheels(item, object_class) is not None:
+        words = f"assumed for: {ON_WHEELS}, usual_furniture.csv; not recorded"
+        return FurnitureGuess(Furniture.FLOOR, Origin.ASSUMED, words, "judgement: nothing rolls about on a pedestal")
     about = "what stands" if row.object_class == ANY else object_class.replace("_", " ")
     from_ = f" from {row.taller_than:g} m on" if row.taller_than else ""
     about = WHAT_HANGS.get(support, about)
@@ -258,8 +274,24 @@ def in_furniture(scene: Scene, house: HouseEffect, values: AssumedValues) -> Sce
         notes = (f"furniture: {row.title}, {guess.words}",)
     else:
         notes = ()
+    slope = _slope(scene, known.get(LEVEL_ERROR))
+    if slope is not None:
+        known, notes = {**known, LEVEL_ERROR: slope}, (*notes, slope.note)
     notes = (*notes, *_overloads(scene, row))
     return replace(scene, parameters={**scene.parameters, **known}, assumptions=(*scene.assumptions, *notes))
+
+
+def _slope(scene: Scene, own: Estimate | None) -> Estimate | None:
+    """Return by how much a thing is off level whose record says that its floor slopes [rad]; None of others.
+
+    own : of what it stands on or in, which leans by as much more
+    """
+    item = scene.item
+    if scene.support in (Support.HUNG, Support.SUSPENDED) or not _SLOPES.search(f"{item.displayed}; {item.gallery}"):
+        return None
+    room = limit("sloping_floor")
+    most = radians(room.value) + (0.0 if own is None else own.high)
+    return Estimate.assumed(0.0, -most, most, "rad", say.FLOOR_SLOPES(angle=room.value), f"limits.csv ({room.source})")
 
 
 def row_of_loads(row: FurnitureRow) -> FurnitureRow:

@@ -258,7 +258,7 @@ class SceneParameters:
     def _friction(self) -> None:
         item = self.item
         friction = self._known("friction", "friction", "-")
-        wheels = rolling(item)
+        wheels = rolling(item, self.row.name)
         if friction is None and wheels is not None:
             friction = wheels.rolls
         elif friction is None:

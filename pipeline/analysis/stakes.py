@@ -20,6 +20,7 @@ from functools import cache
 from math import exp
 
 from pipeline.analysis.furniture import SHELF_HEIGHT
+from pipeline.analysis.told import SLENDEREST_CLOCK, longcase
 from pipeline.quantities import G
 from pipeline.records import Assessment, Furniture, Harm, Mount, Scene, Support
 from pipeline.tables import Range, table
@@ -43,6 +44,10 @@ high as they are deep, and those five are exchanged sides, a plate on its edge, 
 _BOWLS = ("dish",)
 _BOWL_RULES = ("deep-bowl",)
 """Classes, and rules of others, of what is as broad as a bowl."""
+
+
+_AIRY = ("mobile", "mobile-wire")
+"""Rules of things of sheet and wire with so much air between them that their weight says nothing of their size."""
 
 
 class Stake(RangeRow):
@@ -199,7 +204,8 @@ def to_check(assessment: Assessment) -> bool:
 
 def ill_weighed(scene: Scene) -> bool:
     """Say whether the recorded mass and sizes cannot both be true: what is built for them would not fit the object."""
-    return scene.item.mass_kg is not None and any(problem.field == "mass_kg" for problem in scene.item.problems)
+    airy = scene.rule.partition(":")[0] in _AIRY
+    return scene.item.mass_kg is not None and not airy and any(one.field == "mass_kg" for one in scene.item.problems)
 
 
 def doubtful(scene: Scene) -> float:
@@ -222,4 +228,6 @@ def doubtful(scene: Scene) -> float:
 def _slenderest(scene: Scene) -> float:
     if scene.object_class in _BOWLS or scene.rule.partition(":")[0] in _BOWL_RULES:
         return SLENDER_BOWL
+    if longcase(scene.item, scene.object_class):
+        return SLENDEREST_CLOCK
     return SLENDER_FIGURE if scene.object_class in _FIGURES else SLENDER

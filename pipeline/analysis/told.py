@@ -18,6 +18,12 @@ from pipeline.tables.surface_rows import surfaces_in
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
 
+SLENDEREST_CLOCK = 12.0
+"""The same of longcase clocks: five of the Carnegie Museum of Art are 5.4 to 9.05 times as high as they are deep."""
+
+CLOCK, LONGCASE = "clock", 1.5
+"""Their class, and height [m] from which a clock is one."""
+
 _QUOTED = 80
 """Characters of the museum's words that a note repeats."""
 
@@ -181,7 +187,7 @@ def as_told(item: Item, row: ObjectClass) -> Item:
     hangs = row.support in _ABOVE
     stands = _footing(item) or (hangs and (item.furniture in _TO_STAND_ON or _names_case(item)))
     usual = row.support is Support.FREESTANDING and WHEN_HELD not in row.models
-    if not stands or (usual and not too_slender(item)):
+    if not stands or (usual and not too_slender(item, row.name)):
         return item
     return replace(item, support=Support.FREESTANDING)
 
@@ -233,8 +239,13 @@ def _case_words() -> re.Pattern[str]:
     return any_of([*CASES, "cabinet", *(word for kind in _IN_CASES for word in words_for(kind))])
 
 
-def too_slender(item: Item) -> float:
+def longcase(item: Item, object_class: str) -> bool:
+    """Say whether a thing of a class is a longcase clock, which stands though it is very slender."""
+    return object_class == CLOCK and (item.height_m or 0.0) >= LONGCASE
+
+
+def too_slender(item: Item, object_class: str) -> float:
     """Return how many times as high as deep a thing is that by that cannot stand by itself; else 0."""
     plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d]
     times = item.height_m / min(plan) if plan and item.height_m is not None else 0.0
-    return times if times > SLENDEREST else 0.0
+    return times if times > (SLENDEREST_CLOCK if longcase(item, object_class) else SLENDEREST) else 0.0

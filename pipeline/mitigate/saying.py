@@ -50,6 +50,9 @@ OF_MEAN = "That is for the mean of the earthquakes: in the worst of them it move
 UPPER_FIRST = "First fix each upper body to the one that it stands on: loose, it falls sooner than all together."
 """Comes before the sentence of a measure for two bodies and more that are followed as one."""
 
+EACH_PIECE = "Do it for each of its pieces: what follows is worked out for all of them as one body."
+"""The same for pieces that stand beside each other and are followed as one."""
+
 HELD_FIRST = (
     "First record the brace, clips or ties that its record tells of as installed: until then they do not count."
 )
@@ -155,6 +158,8 @@ def said_besides(
         first.append(HELD_FIRST)
     if {say.TWO_BODIES(), say.STACKED()} & set(scene.assumptions):
         first.append(UPPER_FIRST)
+    if say.PIECES() in scene.assumptions:
+        first.append(EACH_PIECE)
     asked, takes = _asked(measure, scene, numbers), _takes(scene, values)
     if asked >= ENGINEERED:
         first.append(ENGINEER)

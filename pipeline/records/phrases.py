@@ -26,6 +26,10 @@ STACKED = Clause(
     "it is a stack, whose pieces are followed as one body: where nothing holds them together, the upper ones slide "
     "and rock on those below, and fall sooner"
 )
+PIECES = Clause(
+    "it is several pieces in one record, taken as one body of the size recorded: a piece that is tall for its base "
+    "falls sooner, so record the tallest of them with its own sizes"
+)
 HEAVY_FOR_FURNITURE = Clause(
     "at {mass:kg~2} it is heavier than {furniture} mostly bears ({bears:kg~2}, judgement): have somebody say what "
     "bears it"
@@ -137,6 +141,9 @@ LOOSE_STATED = Clause("not fastened, by the house rule for {rule}")
 LOOSE_TAKEN = Clause("taken as not fastened, which nobody says")
 FURNITURE_DAMPING = Clause("damping of its furniture: {damping:-}, {table} for {furniture}")
 FURNITURE_LEVEL = Clause("level: off by up to {angle:°} either way, {table} for {furniture}")
+FLOOR_SLOPES = Clause(
+    "level: off by up to {angle:°} either way, for its floor is said to slope: measure it, or wedge it level"
+)
 FURNITURE_HALF_WIDTH = Clause("from the middle of its base to its edge: {span:m}, {table} for {furniture}")
 FURNITURE_CG = Clause("height of its centre of gravity: {span:m}, {table} for {furniture}")
 FURNITURE_FRICTION = Clause("friction on its floor: {span:-}, {table} for {furniture}")

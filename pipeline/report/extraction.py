@@ -7,7 +7,7 @@ from io import TextIOWrapper
 from typing import IO
 
 from pipeline.analysis.classify import WEIGHED, object_classes
-from pipeline.analysis.furniture import DAMPING, FREQUENCY, IN_THE_OPEN, LEVEL_ERROR, WHAT_HANGS
+from pipeline.analysis.furniture import DAMPING, FREQUENCY, IN_THE_OPEN, LEVEL_ERROR, ON_WHEELS, WHAT_HANGS
 from pipeline.analysis.section import OF_CLASS
 from pipeline.analysis.sizes import SIZES
 from pipeline.analysis.usual import ON_ANY
@@ -22,6 +22,7 @@ from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
 from pipeline.mitigate.saying import (
     ANCHORED,
+    EACH_PIECE,
     ENGINEER,
     HEAVIEST,
     HELD_FIRST,
@@ -111,6 +112,7 @@ def _of_measures() -> Iterator[str]:
         OF_MEAN,
         ANCHORED,
         NAMED_FIRST,
+        EACH_PIECE,
         UPPER_FIRST,
         HELD_FIRST,
     )
@@ -127,7 +129,16 @@ def _of_assumptions() -> Iterator[str]:
     backs = ((row.back_surface, row.wall_surface) for row in assumed().damping)
     yield from (name.lower() for pair in (*pairs, *backs) for name in pair)
     yield from ON_ANY.values()
-    yield from ("any material", "any floor", "its back", "the wall", "what stands", IN_THE_OPEN, *WHAT_HANGS.values())
+    yield from (
+        "any material",
+        "any floor",
+        "its back",
+        "the wall",
+        "what stands",
+        IN_THE_OPEN,
+        ON_WHEELS,
+        *WHAT_HANGS.values(),
+    )
     yield from (f"critical section ({kind})" for kind in OF_CLASS)
     yield from ("wall of its foot", "narrower side", "narrower base side", "half width of what it lies on")
     yield from (f"smallest size, its {size}" for size in SIZES)

@@ -1,6 +1,7 @@
 """Rows of bodies.csv: what is assumed of a thing more particularly than its class does, by its name and its size."""
 
 import re
+from collections.abc import Iterable
 from functools import cache
 from typing import Annotated, Literal
 
@@ -160,3 +161,20 @@ def _patterns() -> tuple[tuple[re.Pattern[str] | None, BodyRow], ...]:
         words = [word for word in row.words if not word.startswith(_BY_RULE)]
         out.append((any_of(words) if words else None, row))
     return tuple(out)
+
+
+def body_told(notes: Iterable[str]) -> str:
+    """Return as what body something is assumed of a thing, in words; "" where nothing is.
+
+    Parameters
+    ----------
+    notes : iterable of str
+        What is said of each of its numbers.
+    """
+    return next((found[1] for note in notes if (found := _titles().search(note))), "")
+
+
+@cache
+def _titles() -> re.Pattern[str]:
+    titles = sorted({row.title.lower() for row in body_rows()}, key=len, reverse=True)
+    return re.compile(rf"assumed for: ({'|'.join(map(re.escape, titles))})(?![^;])")

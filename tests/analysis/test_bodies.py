@@ -143,6 +143,46 @@ def test_what_stands_on_wheels_a_cradle_or_a_stand_stands_as_such_things_do() ->
     assert classify(horse).parameters["half_width"].value >= 0.15
 
 
+@pytest.mark.parametrize("words", ["stacked in showcase", "one on top of the other", "gestapelt im Regal", "empilés"])
+def test_a_stack_is_told_by_its_display_too(words: str) -> None:
+    boxes = Item("17", "G", object_name="boxes", title="Three boxes", medium="lacquer", height_m=0.45, width_m=0.3,
+                 depth_m=0.2)  # fmt: skip
+    assert say.STACKED() not in classify(boxes).assumptions
+    assert say.STACKED() in classify(replace(boxes, displayed=words)).assumptions
+    # What is laid on its face falls from no height, and a picture hangs.
+    lying = replace(boxes, object_name="coins", title="Coins", height_m=0.01, displayed=words)
+    assert say.STACKED() not in classify(lying).assumptions
+
+
+@pytest.mark.parametrize("title", ["Chess set on board", "Kaffeeservice, 15 Teile", "Servizio da tè", "Set of chairs"])
+def test_many_pieces_in_one_record_are_told_to_be_many(title: str) -> None:
+    """What is said of 40 cm of board is not true of a king of 9 cm on a foot of 3."""
+    whole = Item("18", "G", object_name="set", title=title, medium="ivory", height_m=0.09, width_m=0.4, depth_m=0.4,
+                 displayed="standing in showcase")  # fmt: skip
+    assert (say.PIECES() in classify(whole).assumptions) is (not title.startswith("Set"))
+
+
+@pytest.mark.parametrize(("height", "width", "factor"), [(1.45, 1.75, 1.41), (1.8, 1.85, 1.17), (2.1, 2.0, 1.12)])
+def test_a_car_is_as_stable_as_cars_are(height: float, width: float, factor: float) -> None:
+    """Half a track over the height of the centre of gravity: NHTSA HS-809 868 (2005), means of cars, SUVs and vans."""
+    car = Item("15", "G", object_name="automobile", title="Automobile", medium="steel", height_m=height, width_m=width,
+               depth_m=4.5)  # fmt: skip
+    found = classify(car).parameters
+    half, high = found["half_width"], found["cg_height"]
+    assert half.low / high.high < factor < half.high / high.low
+    assert half.value / high.value == pytest.approx(factor, rel=0.2)
+    assert 600.0 < found["mass"].low < found["mass"].value < found["mass"].high < 8000.0
+
+
+def test_a_locomotive_stands_on_its_gauge() -> None:
+    """Of 1.435 m between the rails."""
+    engine = Item("16", "G", object_name="locomotive", title="Tank engine", medium="steel", height_m=3.9, width_m=2.8,
+                  depth_m=9.5)  # fmt: skip
+    half = classify(engine).parameters["half_width"]
+    assert half.value == pytest.approx(0.7175, rel=0.05)
+    assert half.high < 0.9
+
+
 def test_a_slab_that_stands_stands_on_its_edge() -> None:
     relief = Item("10", "G", object_name="stele", medium="marble", height_m=1.45, width_m=0.6, depth_m=0.14,
                   support=Support.FREESTANDING)  # fmt: skip

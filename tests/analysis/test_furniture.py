@@ -267,6 +267,37 @@ def test_few_variants_come_close_to_a_fine_grid() -> None:
     assert np.all(mine > 0.8 * np.max(slides, axis=0))
 
 
+@pytest.mark.parametrize(
+    "words", ["on sloping stone floor", "floor is uneven here", "auf schiefem Fußboden", "sol en pente", "not level"]
+)
+def test_a_floor_that_is_said_to_slope_lifts_an_edge_by_less(words: str) -> None:
+    """Statics: off level by phi a block of b / h tips at a push of g tan(atan(b / h) - phi), nearly g (b / h - phi)."""
+    stele = Item("1", "G", object_name="stele", medium="marble", height_m=1.6, width_m=0.5, depth_m=0.3,
+                 base_width_m=0.5, base_depth_m=0.24, cg_height_m=0.8, displayed="on floor")  # fmt: skip
+    flat, slope = classify(stele), classify(replace(stele, displayed=f"on floor, {words}"))
+    assert filter_of(flat) is None
+    leans = filter_of(slope)
+    assert leans is not None
+    tips, phi = np.arctan2(0.12, 0.8), leans.level_error
+    assert np.radians(0.5) < phi < np.radians(3.0)
+    t = np.arange(0.0, 8.0, 0.01)
+    rises = np.minimum(t / 4.0, 1.0)
+    for share, lifts in ((0.97, False), (1.06, True)):
+        push = G * np.tan(tips - phi) * share
+        pushed = Motion(0.01, [push * rises, 0.0 * t, 0.0 * t])
+        assert push < 0.12 / 0.8 * G
+        worst = max(largest_push(one.excitation(None)) for one in _variants(pushed, furniture=leans))
+        assert (worst > 0.12 / 0.8 * G) is lifts
+
+
+def test_furniture_leans_with_its_floor() -> None:
+    vase = replace(VASE, furniture=Furniture.SHOWCASE)
+    flat, slope = (filter_of(classify(one)) for one in (vase, replace(vase, displayed="sloping floor")))
+    assert flat is not None
+    assert slope is not None
+    assert slope.level_error - flat.level_error == pytest.approx(np.radians(1.5))
+
+
 def test_the_chain_is_floor_furniture_isolator_object() -> None:
     """What stands on an isolator in a showcase feels what both pass on, one after the other."""
     scene = classify(replace(VASE, furniture=Furniture.SHOWCASE, friction=0.03))

@@ -6,8 +6,18 @@ from math import exp
 import pytest
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.stakes import Term, counting, danger_of, doubtful, expected_loss, stakes, value_of, worth_of
-from pipeline.records import Assessment, Band, Estimate, Furniture, Item, Likelihood, Origin, Scene, Support
+from pipeline.analysis.stakes import (
+    Term,
+    counting,
+    danger_of,
+    doubtful,
+    expected_loss,
+    ill_weighed,
+    stakes,
+    value_of,
+    worth_of,
+)
+from pipeline.records import Assessment, Band, Estimate, Furniture, Item, Likelihood, Origin, Problem, Scene, Support
 from tests.museum import VASE
 
 G = 9.80665
@@ -134,3 +144,30 @@ def test_what_no_such_thing_is_as_slender_as_has_a_doubtful_record(
     assert doubtful(classify(item)) == pytest.approx(times, abs=0.06)
     # Who has measured its base has looked at it.
     assert doubtful(classify(replace(item, base_width_m=0.03))) == 0.0
+
+
+CARNEGIE_CLOCKS = ((94.5, 17.0, 10.5), (100.5, 22.125, 11.125), (86.125, 30.0, 16.0), (95.0, 19.5, 10.5),
+                   (93.5, 22.0, 11.125))  # fmt: skip
+"""Height, width and depth [inches] of the five tall case clocks of the Carnegie Museum of Art (open data, CC0)."""
+
+
+@pytest.mark.parametrize("inches", CARNEGIE_CLOCKS, ids=str)
+def test_real_longcase_clocks_stand_as_they_are_recorded(inches: tuple[float, ...]) -> None:
+    """They stand, and are slender enough to fall: that is no reason to doubt their sizes."""
+    height, width, depth = (0.0254 * side for side in inches)
+    clock = Item("1", "G", title="Tall case clock", object_name="clock", medium="mahogany, brass", height_m=height,
+                 width_m=width, depth_m=depth)  # fmt: skip
+    scene = classify(clock)
+    assert scene.missing == ()
+    assert doubtful(scene) == 0.0
+    # A mantel clock of these proportions, and one whose depth lost a digit, are doubted still.
+    assert doubtful(classify(replace(clock, height_m=0.3, width_m=0.1, depth_m=0.035))) > 0.0
+    assert classify(replace(clock, depth_m=0.1 * depth)).missing != ()
+
+
+def test_a_mobile_weighs_as_little_as_it_does() -> None:
+    light = Problem("mass_kg", "6 kg in a box of 1.5 x 2 x 2 m is 1 kg/m3", "weigh it again")
+    mobile = Item("1", "G", title="Red mobile", object_name="mobile", medium="painted sheet metal, wire",
+                  height_m=1.5, width_m=2.0, depth_m=2.0, mass_kg=6.0, problems=(light,))  # fmt: skip
+    assert not ill_weighed(classify(mobile))
+    assert ill_weighed(classify(replace(mobile, object_name="sculpture", title="Bronze figure")))

@@ -11,7 +11,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.response import respond
 from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED, HARMLESS
-from pipeline.mitigate.saying import ANCHORED
+from pipeline.mitigate.saying import ANCHORED, EACH_PIECE
 from pipeline.quantities import G
 from pipeline.records import Anchorage, Furniture, Item, Motion, Support
 from pipeline.report.pages.plainly import plain_measure
@@ -143,6 +143,55 @@ def test_nothing_else_is_asked_of_wheels(motion: Motion) -> None:
     titles = {text.partition(":")[0]: text for text in advice.rejected}
     assert "it rolls" in titles["Non-slip pad"]
     assert "no foot to be held by" in titles["Padded clamps"]
+
+
+WHEELED = (
+    Item("1", "G", "Horch 8 saloon", object_name="motor car", medium="steel, glass, leather", height_m=1.7,
+         width_m=1.8, depth_m=4.6),
+    Item("2", "G", "Cannon on its field carriage", object_name="cannon", medium="bronze, oak", height_m=1.4,
+         width_m=1.8, depth_m=3.2),
+    Item("3", "G", "Tank engine", object_name="locomotive", medium="steel", height_m=3.8, width_m=2.6, depth_m=9.0),
+    Item("4", "G", "Chariot", object_name="model", medium="wood", height_m=0.4, width_m=0.3, depth_m=0.5,
+         displayed="auf Schienen"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("item", WHEELED, ids=lambda item: item.title)
+def test_what_nobody_needs_to_say_is_on_wheels_rolls(item: Item, motion: Motion) -> None:
+    """Handbook rolling resistances are far below any friction of Table 3 (0.11 and more); chocked it slides."""
+    rolls = classify(item).parameters["friction_static"]
+    assert rolls.value < 0.11
+    assert solve(replace(item, mass_kg=1500.0), motion.scaled(0.4, "less")).measure == "chocks"
+    kept = replace(item, displayed=f"{item.displayed}; wheels scotched, handbrake on")
+    assert classify(kept).parameters["friction_static"].low >= 0.11
+
+
+@pytest.mark.parametrize(
+    ("name", "height"), [("car mascot", 0.14), ("locomotive whistle", 0.3), ("tram bell", 0.25), ("vase", 1.2)]
+)
+def test_a_part_of_a_vehicle_does_not_roll(name: str, height: float) -> None:
+    """Nor does what shows one."""
+    part = Item("1", "G", "Racing car", object_name=name, medium="brass", height_m=height, width_m=0.1, depth_m=0.1,
+                displayed="on pedestal")  # fmt: skip
+    assert classify(part).parameters["friction_static"].value > 0.11
+
+
+def test_what_is_done_to_a_service_is_done_to_each_piece(motion: Motion) -> None:
+    service = Item("1", "G", "Tea service", object_name="tea service", medium="porcelain", height_m=0.35, width_m=0.1,
+                   depth_m=0.1, mass_kg=2.0, displayed="on floor", friction=0.6)  # fmt: skip
+    advice = solve(service, motion)
+    assert advice.sentence.startswith(EACH_PIECE)
+    assert EACH_PIECE not in solve(replace(service, title="Teapot", object_name="teapot"), motion).sentence
+    assert "each of its pieces" in plain_measure(advice, Units("cm"))
+
+
+def test_what_rolls_stands_on_the_floor() -> None:
+    trolley = Item("1", "G", "Tea trolley", object_name="trolley", medium="beech", height_m=0.75, width_m=0.45,
+                   depth_m=0.8, displayed="sur roulettes")  # fmt: skip
+    assert classify(trolley).furniture is Furniture.FLOOR
+    assert classify(replace(trolley, displayed="freestanding")).furniture is Furniture.PEDESTAL
+    toy = replace(trolley, object_name="toy", title="Horse on wheels", height_m=0.25, width_m=0.25, depth_m=0.1)
+    assert classify(toy).furniture is Furniture.SHOWCASE
 
 
 def test_wheels_are_no_answer_for_what_has_none(motion: Motion) -> None:

@@ -29,6 +29,6 @@ class Chocks(Measure):
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:  # noqa: ARG002
         """Propose it for what stands on wheels and whose friction nobody measured."""
         stands = one.scene.support is Support.FREESTANDING and one.scene.item.friction is None
-        if not stands or rolling(one.scene.item) is None:
+        if not stands or rolling(one.scene.item, one.scene.object_class) is None:
             return UNCONCERNED
         return self.one_trial(one, {}, finish=movement, mark_of="sliding")

@@ -255,7 +255,7 @@ class Fixing(Measure, ABC):
             return refused(N_("objects of its kind cannot be held so"))
         if not may_be_held(scene) or not {"half_width", "cg_height"} <= set(scene.parameters):
             return UNKNOWN_SECTION
-        if self.at_foot and rolling(scene.item) is not None:
+        if self.at_foot and rolling(scene.item, scene.object_class) is not None:
             return refused(N_("it stands on wheels, and has no foot to be held by"))
         if self.screwed and on_glass(scene.item):
             return refused(N_("it stands on glass, into which nothing is screwed"))

@@ -35,7 +35,7 @@ class _RougherSurface(Measure, ABC):
         """Return why no surface suits it, None where one may."""
         if one.scene.support is not Support.FREESTANDING:
             return NOT_FREE
-        if rolling(one.scene.item) is not None:
+        if rolling(one.scene.item, one.scene.object_class) is not None:
             return refused(N_("it rolls, whatever its wheels stand on"))
         if one.rocks:
             return refused(N_("it may rock: a surface that holds it does not keep it upright"))

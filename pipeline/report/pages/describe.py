@@ -24,7 +24,7 @@ from pipeline.records import (
     Verdict,
 )
 from pipeline.records.result import BOUNDS
-from pipeline.report.assumed import assumed, class_words, happening, rejected, rule_words, sourced
+from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
 from pipeline.report.pages.chances import chance_view, left_over, open_for, worth_words
@@ -32,7 +32,7 @@ from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
 from pipeline.report.pages.notes import Memory, finding_key
 from pipeline.report.pages.plainly import brief_measure, dangers, full_measure, plain_measure
-from pipeline.report.pages.scene_words import furniture, held, left_out, taken_words
+from pipeline.report.pages.scene_words import furniture, held, left_out, taken_words, what_it_is
 from pipeline.report.pages.survey_words import missing_words, wish_views
 from pipeline.report.pages.tallies import finding_order, finding_state, grave, state_of, urgency
 from pipeline.report.pages.views import (
@@ -50,6 +50,7 @@ from pipeline.report.pages.views import (
 from pipeline.report.plots.chart import Spot
 from pipeline.report.text import clean, digest, plain, short, words
 from pipeline.report.units import Units, by_hand, ratio
+from pipeline.tables.body_rows import body_told
 
 _PLACEHOLDER = re.compile(r"{(\w+)}")
 _RANGE = re.compile(r" \([^()]*{(?:low|high)}[^()]*\)")
@@ -305,7 +306,7 @@ class Describer:
             state=state,
             value_class=clean(item.value_class),
             worth=worth_words(scene, worth) if worth.terms else "",
-            object_class=told(class_words, clean(scene.object_class)),
+            object_class=told(what_it_is, (clean(scene.object_class), body_told(one.note for _name, one in estimates))),
             taken=told(taken_words, scene, scene.object_class, scene.chances),
             rule=told(rule_words, clean(scene.rule)),
             support=told(held, scene, scene.support, scene.mount),

@@ -12,6 +12,7 @@ from pipeline.mitigate.measures.fixings import FINISHED
 from pipeline.mitigate.saying import (
     ANCHORED,
     AT_BEST,
+    EACH_PIECE,
     ENGINEER,
     HEAVIEST,
     HELD_FIRST,
@@ -151,6 +152,8 @@ def _advised(
         told.append(_("First record what holds it now as installed."))
     if UPPER_FIRST in advice.sentence:
         told.append(_("First fix each upper body to the one that it stands on."))
+    if EACH_PIECE in advice.sentence:
+        told.append(_("Do it for each of its pieces."))
     if ENGINEER in advice.sentence:
         told.append(_("Have an engineer design it.") if brief else said(ENGINEER))
     phrase = _PHRASES[advice.measure]() if advice.measure in _PHRASES else ""

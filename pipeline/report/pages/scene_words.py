@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 
 from pipeline.records import Anchorage, Furniture, Mount, Origin, Scene, Support
-from pipeline.report.assumed import reason_words
+from pipeline.report.assumed import class_words, reason_words
 from pipeline.report.language import _, local, said
 from pipeline.report.text import clean, count, words
 from pipeline.tables import table
@@ -95,6 +95,15 @@ def left_out(skipped: tuple[str, str]) -> str:
     not_required = _("not required")
     told = f"{words(clean(model))}: {not_required}: {reason_words(first)}"
     return f"{told}; {said(last)}" if last else told
+
+
+def what_it_is(kind: tuple[str, str]) -> str:
+    """Return what an object is computed as.
+
+    kind : its class, and in words the body that is more particular; "" where there is none
+    """
+    object_class, body = kind
+    return said(body) if body else class_words(object_class)
 
 
 def taken_words(scene: Scene) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from string import Formatter
 
 from pipeline.mitigate.by_class import NAMED_FIRST
-from pipeline.mitigate.saying import ANCHORED, ENGINEER, HELD_FIRST, UPPER_FIRST
+from pipeline.mitigate.saying import ANCHORED, EACH_PIECE, ENGINEER, HELD_FIRST, UPPER_FIRST
 from pipeline.planning.errands import deciding
 from pipeline.quantities import sorting_key
 from pipeline.records import Assessment, Recommendation
@@ -34,6 +34,7 @@ _BEFORE: tuple[tuple[str, Callable[[], str]], ...] = (
     (ANCHORED, lambda: _("first have what it stands in fastened")),
     (HELD_FIRST, lambda: _("first record what holds it now")),
     (UPPER_FIRST, lambda: _("first fix its upper body")),
+    (EACH_PIECE, lambda: _("for each piece")),
     (ENGINEER, lambda: _("an engineer designs it")),
 )
 
