@@ -156,10 +156,8 @@ def heads_or_sums(row: Row, number: str, beside: Set[int]) -> str:
     """
     if beside and beside <= row.faults.keys() and is_heading(row):
         return "is merged across all columns: a heading"
-    if _SUM.fullmatch(number.strip(" :.")):
-        return "sums the others up"
     if not beside or any(any(map(str.isalpha, row.cells[at])) for at in beside):
-        return ""
+        return "sums the others up" if _SUM.fullmatch(number.strip(" :.")) else ""
     if not any(map(str.isnumeric, number)):
         return "has no figure in it and nothing but numbers beside it: a heading, or a sum"
     return "has nothing but numbers beside it: a heading, or a sum" if _SUM.match(number) else ""

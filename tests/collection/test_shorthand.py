@@ -1,0 +1,116 @@
+"""Lists in a registrar's shorthand: headings and heads again and again, places by signs, sizes between slashes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from pipeline.collection.dimensions.structured import plain_text
+from pipeline.collection.display_words import flag_of
+from pipeline.collection.guessing.names import unit_in
+from pipeline.collection.places import NamedPlace, parted
+from pipeline.night.importing import Proposed, proposed
+from pipeline.records import Item
+
+SECTIONS = """GALLERY 1 - EGYPT,,,,
+No,Object,Dims,Wt,Case
+E.1,"Anthropoid coffin, wood",185 x 52 x 40 cm,45 kg,"standing in corner, strapped"
+E.2,"Canopic jar, limestone",36 x 17 cm dia,6 kg,Case 1
+GALLERY 2 - GREECE,,,,
+No,Object,Dims,Wt,Case
+G.1,"Krater, red-figure",46 x 48 cm dia,8 kg,Case 4
+G.2,"Head of a youth, marble",29 x 20 x 22 cm,18 kg,"plinth, on pin"
+Total,4 objects,,,
+"""
+PALACE = """Pos;Bezeichnung;Standort (Geschoss/Raum/Vitrine);Größe H/B/T;kg
+1;Meißener Deckelvase;OG1 / Porzellankabinett / Vitrine 2;62/31/31;7,5
+2;Bodenstanduhr;OG1 / Gartensaal / –;245/58/34;65
+3;Gobelin;OG1 / Gartensaal / Wand Nord;310/420/–;
+4;Kronleuchter;OG1 / Gartensaal / Decke;160/120/120;85
+5;Marmorbüste;EG / Vestibül / Postament;78/55/32;120
+"""
+
+
+def listed(folder: Path, text: str) -> tuple[Proposed, dict[str, Item]]:
+    file = folder / "list.csv"
+    file.write_text(text, encoding="utf-8")
+    read = proposed(str(file))
+    return read, {item.object_number: item for item in read.reading.items}
+
+
+def test_the_first_heading_may_stand_above_the_names_of_the_columns(tmp_path: Path) -> None:
+    read, items = listed(tmp_path, SECTIONS)
+    assert {number: item.gallery for number, item in items.items()} == {
+        "E.1": "GALLERY 1 - EGYPT",
+        "E.2": "GALLERY 1 - EGYPT",
+        "G.1": "GALLERY 2 - GREECE",
+        "G.2": "GALLERY 2 - GREECE",
+    }
+    refused = [one.message for one in read.reading.rejected]
+    assert len(refused) == 2
+    assert "row 4 (line 6): repeats the names of the columns" in refused[0]
+    assert "'Total' sums the others up" in refused[1]
+
+
+def test_a_title_above_the_names_is_no_heading_where_none_is_like_it(tmp_path: Path) -> None:
+    more = SECTIONS.replace("Total,", "GALLERY 3 - ROME,,,,\nR.1,Bust,71 x 52 x 28 cm,96 kg,plinth\nTotal,")
+    read, items = listed(tmp_path, more.replace("GALLERY 1 - EGYPT", "Insured objects of 2026"))
+    assert "first_heading" not in read.guess.text
+    assert (items["E.1"].gallery, items["R.1"].gallery) == ("Location not recorded", "GALLERY 3 - ROME")
+
+
+def test_sizes_between_slashes_and_walls_of_a_room(tmp_path: Path) -> None:
+    _, items = listed(tmp_path, PALACE)
+    assert {number: (one.height_m, one.width_m, one.depth_m) for number, one in items.items()} == {
+        "1": (0.62, 0.31, 0.31),
+        "2": (2.45, 0.58, 0.34),
+        "3": (3.1, 4.2, None),
+        "4": (1.6, 1.2, 1.2),
+        "5": (0.78, 0.55, 0.32),
+    }
+    assert [one.gallery for one in items.values()] == [
+        "OG1 / Porzellankabinett",
+        "OG1 / Gartensaal",
+        "OG1 / Gartensaal",
+        "OG1 / Gartensaal",
+        "EG / Vestibül",
+    ]
+    assert [one.mass_kg for one in items.values()] == [7.5, 65.0, None, 85.0, 120.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        ("62/31/31", "62 x 31 x 31"),
+        ("310 / 420 / –", "310 x 420"),
+        ("12,5/8/3", "12,5 x 8 x 3"),
+        ("12/05/1998", "12/05/1998"),
+        ("1/2", "1/2"),
+    ],
+)
+def test_three_numbers_between_slashes_are_sides_and_dates_are_dates(text: str, plain: str) -> None:
+    assert plain_text(text) == plain
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("G12.C03.S2", NamedPlace("G12", "C03.S2")),
+        ("G12-P01", NamedPlace("G12", "", "P01")),
+        ("ST-B2-R14", NamedPlace("ST-B2-R14")),
+        ("B2.R14", NamedPlace("B2.R14")),
+        ("Gallery 3, east wall", NamedPlace("Gallery 3", "", "east wall")),
+        ("Hall / West wing", NamedPlace("Hall / West wing")),
+    ],
+)
+def test_places_by_signs_and_walls(text: str, place: NamedPlace) -> None:
+    assert parted(text) == place
+
+
+def test_flags_in_two_languages_and_units_in_hebrew() -> None:
+    assert flag_of("Oui / Yes") is True
+    assert flag_of("Non / No") is False
+    assert flag_of("Y/N") is flag_of("N/A") is None
+    assert unit_in('גובה (ס"מ)') == ("גובה", "cm")
+    assert unit_in('משקל (ק"ג)')[1] == "kg"
