@@ -36,18 +36,32 @@ def has_headings(rows: Sequence[Row], first: str = "") -> bool:
     -------
     bool
     """
-    alone = [is_heading(row) for row in rows]
-    texts = [
-        first_text(row) for row, one, below in zip(rows, alone, [*alone[1:], True], strict=False) if one and not below
-    ]
-    # A title above the names of the columns is a heading where one below is like it: Gallery 1, and Gallery 2.
-    texts += (
-        [first]
-        if first and any(_FIGURES.sub("0", one).split()[:2] == _FIGURES.sub("0", first).split()[:2] for one in texts)
-        else []
-    )
+    texts = _headings(rows)
+    texts += [first] if heads_first(rows, first) else []
     places = sum(map(_names_place, texts))
     return FEWEST <= len(texts) <= _MOST * len(rows) and places >= FEWEST and 2 * places >= len(texts)
+
+
+def heads_first(rows: Sequence[Row], title: str) -> bool:
+    """Say whether a title above the names of the columns heads the rows below: Gallery 1, where Gallery 2 is below.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Of a table, without its header.
+    title : str
+        What stands alone above the header; "" for nothing.
+    """
+    begins = _FIGURES.sub("0", title).split()[:2]
+    return bool(begins) and any(_FIGURES.sub("0", one).split()[:2] == begins for one in _headings(rows))
+
+
+def _headings(rows: Sequence[Row]) -> list[str]:
+    """Return the texts of rows that stand alone, and above others that do not."""
+    alone = [is_heading(row) for row in rows]
+    return [
+        first_text(row) for row, one, below in zip(rows, alone, [*alone[1:], True], strict=False) if one and not below
+    ]
 
 
 def _names_place(text: str) -> bool:

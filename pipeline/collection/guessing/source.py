@@ -13,7 +13,7 @@ from typing import Any, BinaryIO, cast
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, columns_of
-from pipeline.collection.guessing.headings import has_headings
+from pipeline.collection.guessing.headings import has_headings, heads_first
 from pipeline.collection.guessing.json_lists import objects_in
 from pipeline.collection.guessing.long_rows import long_form_of
 from pipeline.collection.guessing.notes import GuessNotes
@@ -346,7 +346,7 @@ def columns_in(path: Path, source: dict[str, Any]) -> list[Column]:
     first = _above_the_names(path, source) if some and source.get("header_row", 1) > 1 else ""
     if has_headings(some[1:], first) and HEADING not in map(str.strip, some[0].cells):
         source["headings"] = True
-        if first and not is_heading(some[1]):
+        if heads_first(some[1:], first) and not is_heading(some[1]):
             source["first_heading"] = first
         some = list(under_headings(iter(some), path.name, source.get("first_heading", "")))
     return _filled(path.name, iter(some))
