@@ -6,12 +6,15 @@ from pathlib import Path
 
 import pytest
 
+from pipeline.analysis.classify import classify
+from pipeline.analysis.told import as_displayed
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.display_words import flag_of
+from pipeline.collection.guessing.frames import without_frame
 from pipeline.collection.guessing.names import unit_in
 from pipeline.collection.places import NamedPlace, parted
 from pipeline.night.importing import Proposed, proposed
-from pipeline.records import Item
+from pipeline.records import Hanging, Item, Support
 
 SECTIONS = """GALLERY 1 - EGYPT,,,,
 No,Object,Dims,Wt,Case
@@ -29,6 +32,19 @@ PALACE = """Pos;Bezeichnung;Standort (Geschoss/Raum/Vitrine);Größe H/B/T;kg
 3;Gobelin;OG1 / Gartensaal / Wand Nord;310/420/–;
 4;Kronleuchter;OG1 / Gartensaal / Decke;160/120/120;85
 5;Marmorbüste;EG / Vestibül / Postament;78/55/32;120
+"""
+PICTURES = """Acc.no,Title,Medium,Image H (in),Image W (in),Framed H (in),Framed W (in),Framed D (in),Location,Hardware
+P.1,Ville d'Avray,oil on canvas,19 1/4,25 5/8,29,36,4,Gallery 5 north wall,"2 D-rings, wire"
+P.3,The Gale,oil on canvas,30,48,41,59,5,Gallery 7,"security hangers, 2 each"
+P.4,The Thinker,bronze,79,38,,,,Sculpture court,bolted to granite plinth
+P.5,Mobile,painted steel,60,,,,,Atrium,suspended from ceiling on cable
+"""
+PARISH = """N°,Descripción,Material y técnica,Medidas aprox.,Lugar dentro del templo
+1,Cristo crucificado,madera policromada,1.80 m de alto,"Altar mayor, muro testero"
+3,Campana mayor,bronce fundido,"90 cm Ø x 85 cm alto, unos 400 kg","Torre, colgada de viga"
+5,Pila bautismal,piedra laja,1.02 m alto x .75 m diámetro,"Bautisterio, empotrada al piso"
+6,Óleo Ánimas del Purgatorio,óleo sobre lienzo,2.40 x 1.90 m,Muro norte de la nave
+7,Candelabros,bronce,1.35 m,"Presbiterio, en el piso"
 """
 
 
@@ -114,3 +130,46 @@ def test_flags_in_two_languages_and_units_in_hebrew() -> None:
     assert flag_of("Y/N") is flag_of("N/A") is None
     assert unit_in('גובה (ס"מ)') == ("גובה", "cm")
     assert unit_in('משקל (ק"ג)')[1] == "kg"
+
+
+def test_the_frame_counts_and_what_has_none_is_as_it_is(tmp_path: Path) -> None:
+    _, items = listed(tmp_path, PICTURES)
+    # Inches of 25.4 mm.
+    assert [(one.height_m, one.width_m) for one in items.values()] == [
+        pytest.approx((29 * 0.0254, 36 * 0.0254), rel=1e-12),
+        pytest.approx((41 * 0.0254, 59 * 0.0254), rel=1e-12),
+        pytest.approx((79 * 0.0254, 38 * 0.0254), rel=1e-12),
+        (pytest.approx(60 * 0.0254, rel=1e-12), None),
+    ]
+    shown = {number: as_displayed(item) for number, item in items.items()}
+    assert shown["P.1"].hanging is Hanging.TWO_HOOKS
+    assert (shown["P.4"].support, shown["P.5"].support) == (Support.FASTENED, Support.SUSPENDED)
+
+
+@pytest.mark.parametrize(
+    ("name", "rest", "framed"),
+    [
+        ("Framed H", "height", True),
+        ("Largeur avec cadre", "Largeur", True),
+        ("Höhe mit Rahmen", "Höhe", True),
+        ("Höhe ohne Rahmen", "Höhe", False),
+        ("Altura sin marco", "Altura", False),
+        ("Image Width", "Width", False),
+    ],
+)
+def test_sizes_with_and_without_a_frame(name: str, rest: str, framed: bool) -> None:
+    assert without_frame(name) == (rest, framed)
+    assert without_frame("Height") is None
+
+
+def test_places_and_ways_in_one_column_where_no_other_tells_places(tmp_path: Path) -> None:
+    _, items = listed(tmp_path, PARISH)
+    assert {number: item.gallery for number, item in items.items()} == {
+        "1": "Altar mayor, muro testero",
+        "3": "Torre",
+        "5": "Bautisterio",
+        "6": "Muro norte de la nave",
+        "7": "Presbiterio",
+    }
+    assert classify(items["3"]).support is Support.SUSPENDED
+    assert classify(items["5"]).support is Support.FASTENED

@@ -11,7 +11,7 @@ import tomlkit
 from pipeline.collection.display_words import flag_of, says_away, says_flags, tells_nothing
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import NUMBER, Column
-from pipeline.collection.guessing.going_on import goes_on_in
+from pipeline.collection.guessing.going_on import framed_first, goes_on_in
 from pipeline.collection.guessing.names import TEXTS, bare, named, unit_in
 from pipeline.collection.guessing.questions import Question, asked_unit
 from pipeline.collection.guessing.units import FEET
@@ -244,10 +244,11 @@ class Fields:
                 self._or_length(entry, self.length)
                 used.append(self.length)
             more = goes_on_in(column, self.columns) if entry is not None and entry.get("unit") == WRITTEN else None
-            if entry is not None and more is not None and entry.pop("column", None):
-                entry["columns"], entry["first"] = [column.name, more.name], True
+            pair = (column, more) if more is not None else framed_first(column, self.columns)
+            if entry is not None and pair and entry.pop("column", None):
+                entry["columns"], entry["first"] = [one.name for one in pair], True
                 self.questions[:] = [question for question in self.questions if question.key != name]
-                used.append(more)
+                used += pair
             if self.joined.get(name):
                 entry = tomlkit.table()
                 entry["columns"], entry["separator"] = [one.name for one in self.joined[name]], ", "

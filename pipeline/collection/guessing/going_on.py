@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pipeline.collection.guessing.columns import BOTH, Column, tells
-from pipeline.collection.guessing.names import path_of
+from pipeline.collection.guessing.frames import without_frame
+from pipeline.collection.guessing.names import named, path_of, unit_in
 
 
 def goes_on_in(column: Column, columns: Sequence[Column]) -> Column | None:
@@ -29,3 +30,31 @@ def goes_on_in(column: Column, columns: Sequence[Column]) -> Column | None:
         if alone and both <= BOTH * alone:
             return other
     return None
+
+
+def framed_first(column: Column, columns: Sequence[Column]) -> tuple[Column, ...]:
+    """Return the columns of one size with and without the frame, which counts first: "Framed H", and "Image H".
+
+    Parameters
+    ----------
+    column : Column
+        Of a size.
+    columns : sequence of Column
+        Of the source.
+
+    Returns
+    -------
+    tuple of Column
+        Two, which tell the same unit; () where there are no such two.
+    """
+    what, unit = named(column.name), unit_in(column.name)[1]
+    if what is None:
+        return ()
+    framed: list[tuple[int, int, Column]] = []
+    others: list[tuple[int, int, Column]] = []
+    for place, one in enumerate(columns):
+        meant, (name, its) = named(one.name), unit_in(one.name)
+        if one.filled and its == unit and meant is not None and meant.field == what.field:
+            told = without_frame(name)
+            (framed if told is not None and told[1] else others).append((meant.rank, place, one))
+    return (min(framed)[2], min(others)[2]) if framed and others else ()

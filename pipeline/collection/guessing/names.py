@@ -12,6 +12,7 @@ from unicodedata import combining, normalize
 
 from pydantic import AfterValidator
 
+from pipeline.collection.guessing.frames import without_frame
 from pipeline.collection.guessing.name_words import (
     ABOUT,
     DENOTING,
@@ -278,7 +279,16 @@ def named(name: str) -> ColumnMeaning | None:
             return found
     if plain(name) in CALLED:
         return ColumnMeaning("title", _WEAK)
-    return _cut(name) or _within(name)
+    return _cut(name) or _beside_frame(name) or _within(name)
+
+
+def _beside_frame(name: str) -> ColumnMeaning | None:
+    """Return the side, or the weight, that a name tells beside whether the frame counts, which is meant rather."""
+    told = without_frame(unit_in(name)[0])
+    what = None if told is None else _names().get(plain(told[0]))
+    if what is None or told is None or not (what.field == LENGTH or units_of(what.field)):
+        return None
+    return ColumnMeaning(what.field, what.rank if told[1] else what.rank + _WEAK)
 
 
 def _cut(name: str) -> ColumnMeaning | None:

@@ -11,7 +11,8 @@ from pipeline.collection.guessing.columns import Column, internal
 from pipeline.collection.guessing.fields import MOST_WORDS, tells_display
 from pipeline.collection.guessing.names import named, path_of, plain
 from pipeline.collection.guessing.notes import GuessNotes
-from pipeline.collection.places import case_in
+from pipeline.collection.places import case_in, parted
+from pipeline.collection.record import CHOICES
 from pipeline.tables.held_rows import HeldAs, stands_or_hangs, told_by
 
 _REMOVED = frozenset(
@@ -105,6 +106,13 @@ def words_of_display(columns: Sequence[Column], found: dict[str, Column], told: 
         # "Suporte" is what a picture is painted on, and "suporte expositivo" what a thing stands in.
         found["displayed"] = found.pop("medium")
         told.doubts.append(f"column {medium.name!r} is taken to say in words how objects are displayed or held")
+    hanging = found.get("hanging")
+    if hanging is not None and not {"displayed", "hanging"} & {*found.keys() - {"hanging"}, *told.choices}:
+        vocabulary = {one.value for one in CHOICES["hanging"]}
+        if _holds_ways(hanging) and any(text.casefold() not in vocabulary for text in hanging.distinct):
+            # "2 D-rings, wire", and of another object "bolted to plinth": words that tell more than how things hang.
+            found["displayed"] = found.pop("hanging")
+            told.doubts.append(f"column {hanging.name!r} is taken to say in words how objects are displayed or held")
     if not {"displayed", "support"} & {*found, *told.choices}:
         _cases_and_spots(found, told)
     if not {"displayed", "support"} & {*found, *told.choices}:
@@ -155,6 +163,14 @@ def _cases_and_spots(found: dict[str, Column], told: GuessNotes) -> None:
 def _by_what_it_holds(columns: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:
     column = _free_to_tell(columns, found)
     if column is not None:
+        apart = sum(parted(text).room != text for text in column.distinct)
+        if not {"gallery"} & {*found, *told.choices} and 2 * apart >= len(column.distinct):
+            # "Torre, colgada de viga": the place, and how a thing is held there.
+            found["gallery"] = column
+            told.doubts.append(
+                f"column {column.name!r} is taken to tell where objects are, and how they are held there"
+            )
+            return
         found["displayed"] = column
         told.doubts.append(
             f"column {column.name!r} is taken to say how objects are displayed or held, by what it holds"
