@@ -157,11 +157,6 @@ def as_classed(item: Item) -> Item:
     return replace(item, classification=item.object_name, object_name="")
 
 
-def rule_for(item: Item, among: RuleTable | None = None) -> RuleMatch:
-    """Return the first rule whose conditions hold for the object, of Kouros's table or another."""
-    return readings(item, among).decided
-
-
 def readings(item: Item, among: RuleTable | None = None) -> Readings:
     """Return what each part of a record says of the class, and the rule that decides among them."""
     of = among or rules()

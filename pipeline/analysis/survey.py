@@ -240,25 +240,6 @@ def in_order(found: Sequence[MeasurementRequest]) -> list[MeasurementRequest]:
     return sorted(found, key=lambda w: (-w.gain, -w.unlocks, w.gallery, w.object_number, order[w.field]))
 
 
-def by_gallery(found: Sequence[MeasurementRequest]) -> Mapping[str, Sequence[MeasurementRequest]]:
-    """Return the measurement requests of each gallery.
-
-    Parameters
-    ----------
-    found
-        In the order in which they are to stand.
-
-    Returns
-    -------
-    mapping of str to sequence of MeasurementRequest
-        Galleries by name.
-    """
-    out: dict[str, list[MeasurementRequest]] = {gallery: [] for gallery in sorted({w.gallery for w in found})}
-    for request in found:
-        out[request.gallery].append(request)
-    return out
-
-
 @dataclass(frozen=True, slots=True)
 class _Trial:
     """One field of one object, and the open verdicts (model, level) that it takes part in; no models: it is missing."""

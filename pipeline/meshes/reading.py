@@ -33,7 +33,6 @@ FLAT = 1e-9
 MOST_BODIES = 1000
 """Separate bodies of one object; more are the crumbs of a scan."""
 
-BODIES = ("one", "largest", "all")
 """What is done with a file of several bodies: refused, the largest is taken, or all count."""
 
 UPWARDS = {

@@ -101,9 +101,7 @@ class WaveletPulse:
     method: str
 
 
-def velocity_half_cycles(
-    acceleration: Array, dt: float, initial_velocity: float = 0.0, least: float = 0.0
-) -> tuple[HalfCycle, ...]:
+def velocity_half_cycles(acceleration: Array, dt: float, initial_velocity: float = 0.0) -> tuple[HalfCycle, ...]:
     """Return every half-cycle of the velocity between its zero crossings, in order of time.
 
     Parameters
@@ -114,8 +112,6 @@ def velocity_half_cycles(
         Time step in s.
     initial_velocity : float
         In m/s.
-    least : float
-        In m/s; half-cycles with a smaller peak are left out.
 
     Returns
     -------
@@ -140,37 +136,7 @@ def velocity_half_cycles(
     wait = -2.0 * v0 / (a0 - np.sign(v0) * root)
     area = u[crossing] + wait * (v0 + wait * (a0 / 2.0 + wait * rate / 6.0))
     at = crossing + 1
-    return _between_zeros(np.insert(t, at, t[crossing] + wait), np.insert(v, at, 0.0), np.insert(u, at, area), least)
-
-
-def acceleration_half_cycles(acceleration: Array, dt: float, least: float = 0.0) -> tuple[HalfCycle, ...]:
-    """Return every half-cycle of the acceleration with the velocity increment that it delivers, in order of time.
-
-    Parameters
-    ----------
-    acceleration : array, shape (n,)
-        In m/s2, piecewise linear.
-    dt : float
-        Time step in s.
-    least : float
-        In m/s2; half-cycles with a smaller peak are left out.
-
-    Returns
-    -------
-    tuple of HalfCycle
-        Peaks in m/s2, areas in m/s.
-
-    Raises
-    ------
-    InputError
-        For anything but one row of at least two finite values.
-
-    Notes
-    -----
-    Error: rounding.
-    """
-    t, a, v, _ = _refined(acceleration, dt, 0.0)
-    return _between_zeros(t, a, v, least)
+    return _between_zeros(np.insert(t, at, t[crossing] + wait), np.insert(v, at, 0.0), np.insert(u, at, area))
 
 
 def baker_pulse(velocity: Array, dt: float) -> WaveletPulse:
@@ -320,7 +286,7 @@ def _refined(acceleration: Array, dt: float, initial_velocity: float) -> tuple[A
     return t, a, v, u
 
 
-def _between_zeros(t: Array, values: Array, integral: Array, least: float) -> tuple[HalfCycle, ...]:
+def _between_zeros(t: Array, values: Array, integral: Array) -> tuple[HalfCycle, ...]:
     edges = np.unique(np.concatenate([[0], np.flatnonzero(values == 0.0), [values.size - 1]]))
     out = []
     highest = np.maximum.reduceat(values, edges[:-1])
@@ -329,7 +295,7 @@ def _between_zeros(t: Array, values: Array, integral: Array, least: float) -> tu
     for i, (a, b) in enumerate(pairwise(edges.tolist())):
         high, low = max(highest[i], ends[i]), min(lowest[i], ends[i])
         peak = float(high if high >= -low else low)
-        if peak != 0.0 and abs(peak) >= least:
+        if peak != 0.0:
             out.append(HalfCycle(float(t[a]), float(t[b] - t[a]), peak, float(integral[b] - integral[a])))
     return tuple(out)
 

@@ -53,11 +53,6 @@ class Spectrum:
     absolute_acceleration: Array | None = None
 
     @property
-    def pseudo_velocity(self) -> Array:
-        """PSV = w Sd, (k, m) m/s."""
-        return 2.0 * np.pi / self.periods * self.displacement
-
-    @property
     def pseudo_acceleration(self) -> Array:
         """PSA = w^2 Sd, (k, m) m/s2."""
         return (2.0 * np.pi / self.periods) ** 2 * self.displacement

@@ -8,41 +8,9 @@ from typing import Literal
 import numpy as np
 
 from pipeline.errors import InputError
-from pipeline.motions.intensity import measures
 from pipeline.motions.spectra import psa
-from pipeline.quantities import Array, G
+from pipeline.quantities import Array
 from pipeline.records import Motion
-
-
-def scale_to_pga(motion: Motion, pga: float, basis: Literal["larger", "resultant"] = "larger") -> Motion:
-    """Scale the three components by one factor to a peak ground acceleration.
-
-    Parameters
-    ----------
-    motion : Motion
-        What is scaled.
-    pga : float
-        In m/s2, above 0.
-    basis : {"larger", "resultant"}
-        Whose peak that is: of the larger horizontal component, or of the horizontal resultant (RotD100).
-
-    Returns
-    -------
-    Motion
-        With the step written into it.
-
-    Raises
-    ------
-    InputError
-        For a pga that is not above 0 or a motion without horizontal shaking.
-    """
-    _above_zero("pga", pga)
-    if basis not in {"larger", "resultant"}:
-        raise InputError(f"basis must be 'larger' or 'resultant', not {basis!r}")
-    found = measures(motion)["pga" if basis == "larger" else "pga_resultant"]
-    if found == 0.0:
-        raise InputError(f"motion {motion.name!r} has no horizontal shaking to scale")
-    return motion.scaled(pga / found, f"PGA, {basis} horizontal, from {found / G:.4f} g to {pga / G:.4g} g")
 
 
 def target_at(periods: Array, target_periods: Sequence[float] | Array, target: Sequence[float] | Array) -> Array:

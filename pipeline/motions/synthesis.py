@@ -11,7 +11,6 @@ from typing import Literal
 import numpy as np
 
 from pipeline.errors import InputError
-from pipeline.motions.intensity import measures
 from pipeline.quantities import Array
 from pipeline.records import Motion
 
@@ -358,33 +357,6 @@ def mavroeidis_papageorgiou(
     )
     told = f"Mavroeidis-Papageorgiou pulse, A {amplitude:.6g} m/s, Tp {period:g} s, gamma {cycles:g}, nu {phase:g} deg"
     return one_direction(a, step, direction, f"pulse {period:g} s", told)
-
-
-def to_peak(motion: Motion, pga: float) -> Motion:
-    """Scale a test signal to a peak acceleration of its strongest direction.
-
-    Parameters
-    ----------
-    motion : Motion
-        The signal.
-    pga : float
-        In m/s2, above 0.
-
-    Returns
-    -------
-    Motion
-
-    Raises
-    ------
-    InputError
-        For a motion at rest or a peak that is not above 0.
-    """
-    positive(pga=pga)
-    m = measures(motion)
-    peak = max(m["pga_x"], m["pga_y"], m["pga_z"])
-    if peak == 0.0:
-        raise InputError(f"motion {motion.name!r} does not move; nothing to scale")
-    return motion.scaled(pga / peak, f"peak acceleration to {pga:g} m/s2")
 
 
 def one_direction(a: Array, dt: float, direction: str, name: str, told: str) -> Motion:

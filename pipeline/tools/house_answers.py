@@ -39,8 +39,8 @@ class RulesRead:
     faults: tuple[CellFault, ...] = ()
 
 
-def read_rules(path: Path) -> tuple[HouseRule, ...]:
-    """Read the house rules of a workbook's sheet "Rules", of which none may be refused.
+def rules_of(path: Path) -> RulesRead:
+    """Read the house rules of a workbook's sheet "Rules", and what is wrong with the others.
 
     Parameters
     ----------
@@ -49,38 +49,9 @@ def read_rules(path: Path) -> tuple[HouseRule, ...]:
 
     Returns
     -------
-    tuple of HouseRule
-        Of rows with a value, in their order; rows for the same objects that the same person signed on the same day are
-        one rule.
-
-    Raises
-    ------
-    CollectionError
-        For a sheet or a row that cannot be used: naming file, row, column and remedy.
-    """
-    found = rules_of(path)
-    for fault in found.faults:
-        where = f", {fault.column}" if fault.column else ""
-        raise CollectionError(f"{path.name}, sheet {RULES_SHEET!r}, row {fault.row}{where}: {_said(fault)}")
-    return found.rules
-
-
-def _said(fault: CellFault) -> str:
-    return f"{fault.message}; {fault.remedy}"
-
-
-def rules_of(path: Path) -> RulesRead:
-    """Read the house rules of a workbook's sheet "Rules", and what is wrong with the others.
-
-    Parameters
-    ----------
-    path : Path
-        As of `read_rules`.
-
-    Returns
-    -------
     RulesRead
-        Rules of rows with a value, as of `read_rules`, and the rows that were refused.
+        Rules of rows with a value, in their order, and the rows that were refused.  Rows for the same objects that the
+        same person signed on the same day are one rule.
 
     Raises
     ------

@@ -8,7 +8,7 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.rule_table import RuleMatch, fold, identifiers, read_rules, rules, with_own
-from pipeline.analysis.rules import readings, rule_for
+from pipeline.analysis.rules import readings
 from pipeline.records import Item
 from pipeline.tables import Row, TableError
 from pipeline.tables.assumed import assumed
@@ -23,7 +23,7 @@ def row(**cells: str) -> Row:
 
 
 def decide(object_name: str = "", title: str = "", **more: object) -> RuleMatch:
-    return rule_for(Item("1", "G", title=title, object_name=object_name, **more))  # type: ignore[arg-type]
+    return readings(Item("1", "G", title=title, object_name=object_name, **more)).decided  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -122,7 +122,7 @@ def test_every_identifier_decides_one_class_whatever_the_size() -> None:
 
 
 def test_most_rules_are_used_by_one_real_collection_and_the_last_holds_for_the_rest() -> None:
-    used = {rule_for(item).rule.name for item in carnegie().items}
+    used = {readings(item).decided.rule.name for item in carnegie().items}
     assert rules().rules[-1].name in used
     assert len(used) >= 35, sorted({r.name for r in rules().rules} - used)
 
@@ -158,8 +158,8 @@ def test_the_last_row_must_take_the_rest() -> None:
 
 def test_a_row_that_only_names_identifiers_takes_nothing_else() -> None:
     table = read_rules((row(rule="a", aat="300132254", **{"class": "vessel"}), row(**LAST)), assumed())
-    assert rule_for(Item("1", "G", title="vase"), table).rule.name == "rest"
-    assert rule_for(Item("1", "G", aat="300132254"), table).rule.name == "a"
+    assert readings(Item("1", "G", title="vase"), table).decided.rule.name == "rest"
+    assert readings(Item("1", "G", aat="300132254"), table).decided.rule.name == "a"
 
 
 HEADER = "rule,class,aat,classification,words,medium,shape,why\n"
@@ -170,10 +170,10 @@ def test_a_museums_own_rules_come_first_and_may_replace_ours(tmp_path: Path) -> 
     own.write_text(HEADER + "our-lamps,chandelier,,,beacon,,,hangs in our dome\n", encoding="utf-8-sig")
     table = with_own(own)
     assert (
-        rule_for(Item("1", "G", object_name="Beacon"), table).words == "our-lamps: hangs in our dome (named 'beacon')"
+        readings(Item("1", "G", object_name="Beacon"), table).decided.words
+        == "our-lamps: hangs in our dome (named 'beacon')"
     )
-    assert rule_for(Item("1", "G", object_name="Vase"), table) == rule_for(Item("1", "G", object_name="Vase"), table)
-    assert rule_for(Item("1", "G", object_name="Vase"), table).rule.object_class == "vessel"
+    assert readings(Item("1", "G", object_name="Vase"), table).decided.rule.object_class == "vessel"
     replaced = rules().rules[0].name
     own.write_text(HEADER + f"{replaced},vessel,,,beacon,,,ours\n", encoding="utf-8")
     assert [rule.name for rule in with_own(own).rules].count(replaced) == 1

@@ -8,7 +8,6 @@ from pipeline.motions import read_motion
 from pipeline.motions.intensity import integrate
 from pipeline.motions.pulses import (
     PERIODS,
-    acceleration_half_cycles,
     baker_pulse,
     shahi_baker_pulse,
     shahi_baker_pulses,
@@ -47,7 +46,7 @@ def test_velocity_half_cycles_of_a_sine():
     w = 2 * np.pi / T
     cut = 2 * (w * t[1]) ** 2 / 12
     # Rounding leaves a crumb of velocity at the last sample, which would be a half-cycle of its own.
-    got = velocity_half_cycles(V * w * np.cos(w * t), t[1], least=1e-3)
+    got = [h for h in velocity_half_cycles(V * w * np.cos(w * t), t[1]) if abs(h.peak) >= 1e-3]
     assert len(got) == 2 * cycles
     for k, one in enumerate(got):
         sign = (-1) ** k
@@ -73,29 +72,16 @@ def test_crossings_and_peaks_between_samples():
 
 
 def test_half_cycles_conserve_what_they_share_out():
-    """The areas add up to the final displacement and to the final velocity: nothing is lost between half-cycles."""
+    """The areas add up to the final displacement: nothing is lost between half-cycles."""
     a = noise(4, 3000, 1)[0]
     v, u = integrate_row(a)
     assert sum(h.area for h in velocity_half_cycles(a, DT)) == pytest.approx(u[-1], rel=1e-9)
     assert max(abs(h.peak) for h in velocity_half_cycles(a, DT)) >= np.abs(v).max()
-    pieces = acceleration_half_cycles(a, DT)
-    assert sum(h.area for h in pieces) == pytest.approx(v[-1], rel=1e-9)
-    assert sum(h.duration for h in pieces) == pytest.approx((a.size - 1) * DT, rel=1e-9)
-    assert max(abs(h.peak) for h in pieces) == np.abs(a).max()
-    big = acceleration_half_cycles(a, DT, least=2.0)
-    assert big == tuple(h for h in pieces if abs(h.peak) >= 2.0)
 
 
 def integrate_row(a):
     v, u = integrate(Motion(DT, [a, 0 * a, 0 * a]))
     return v[0], u[0]
-
-
-def test_acceleration_half_cycles_of_a_triangle():
-    """0, A, 0, -A, 0: two triangles of area A dt each."""
-    got = acceleration_half_cycles(np.array([0.0, 2.0, 0.0, -2.0, 0.0]), 0.1)
-    assert [(h.peak, h.area) for h in got] == [(2.0, pytest.approx(0.2)), (-2.0, pytest.approx(-0.2))]
-    assert acceleration_half_cycles(np.zeros(5), 0.1) == ()
 
 
 @pytest.mark.parametrize("period", [0.5, 1.0, 3.0, 6.0])

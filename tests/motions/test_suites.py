@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from pipeline.motions.intensity import measures
 from pipeline.motions.spectra import psa
-from pipeline.motions.suites import scale_to_pga, scale_to_spectrum, target_at
-from pipeline.quantities import G
+from pipeline.motions.suites import scale_to_spectrum, target_at
 from pipeline.records import Motion
 
 
@@ -14,17 +12,6 @@ def shaking(n=2000, seed=1):
     t = np.arange(n) * 0.01
     rng = np.random.default_rng(seed)
     return Motion(0.01, rng.normal(size=(3, n)).cumsum(axis=1) * 0.1 * np.sin(np.pi * t / t[-1]) ** 2, "shaking")
-
-
-def test_scale_to_pga():
-    motion = shaking()
-    larger, resultant = scale_to_pga(motion, 0.3 * G), scale_to_pga(motion, 0.3 * G, "resultant")
-    assert measures(larger)["pga"] == pytest.approx(0.3 * G, rel=1e-12)
-    assert measures(resultant)["pga_resultant"] == pytest.approx(0.3 * G, rel=1e-12)
-    # One factor for all three components.
-    factor = larger.acceleration[0, 999] / motion.acceleration[0, 999]
-    assert larger.acceleration == pytest.approx(factor * motion.acceleration, rel=1e-12)
-    assert "to 0.3 g" in larger.steps[-1]
 
 
 def test_target_is_a_straight_line_in_log_log():
@@ -63,9 +50,6 @@ def test_log_and_linear_least_squares_are_least():
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (lambda m: scale_to_pga(m, 0.0), "pga must be"),
-        (lambda m: scale_to_pga(m, 1.0, "mean"), "basis must be"),
-        (lambda m: scale_to_pga(Motion(0.01, np.zeros((3, 9))), 1.0), "no horizontal shaking"),
         (lambda m: scale_to_spectrum(m, [0.1, 1.0], [1.0, 1.0], (0.05, 1.0)), "target spans"),
         (lambda m: scale_to_spectrum(m, [0.1, 1.0], [1.0, 1.0], (1.0, 0.1)), "period_range must be"),
         (lambda m: scale_to_spectrum(m, [0.1, 1.0], [1.0, np.nan], (0.1, 1.0)), "number above 0"),

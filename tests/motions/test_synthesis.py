@@ -14,7 +14,6 @@ from pipeline.motions.synthesis import (
     ricker,
     sine,
     swept_sine,
-    to_peak,
 )
 from pipeline.quantities import G
 
@@ -113,11 +112,6 @@ def test_mavroeidis_papageorgiou_velocity(cycles, phase):
         assert measures(motion)["pgv_x"] == pytest.approx(A, rel=1e-4)
 
 
-def test_to_peak():
-    motion = to_peak(ricker(1.0, 0.5, of="velocity"), 0.4 * G)
-    assert measures(motion)["pga_x"] == pytest.approx(0.4 * G, rel=1e-12)
-
-
 def plateau(t, short=1.0 * G, second=0.6 * G):
     """The shape of ASCE 7: 0.4 to 1 of the plateau, the plateau to S1/Ss, then 1/T."""
     corner = second / short
@@ -177,7 +171,6 @@ def test_seed_decides_the_compatible_motion():
         (lambda: half_sine_pulse(np.inf, 1.0), "peak must be a finite"),
         (lambda: ricker(1.0, 1.0, of="jerk"), "of must be"),
         (lambda: mavroeidis_papageorgiou(1.0, 1.0, 1.0), "must be above 1"),
-        (lambda: to_peak(sine(1.0, 1.0, 1.0), 0.0), "pga must be"),
         (lambda: spectrum_compatible([0.1, 1.0], [1.0, 1.0], 20.0, 0), "periods span"),
         (lambda: spectrum_compatible([1.0, 0.1], [1.0, 1.0], 20.0, 0), "must increase"),
         (lambda: spectrum_compatible([0.01, 9.0], [1.0, -1.0], 20.0, 0), "target: entry 1"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from dataclasses import replace
 from datetime import date
@@ -13,7 +14,6 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.analysis.house.questions import RuleQuestion, rule_questions
 from pipeline.analysis.house.rule import HouseRule, Span
-from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import replace_inventory
 from pipeline.collection.reading import Reading
 from pipeline.operations.workspace import open_workspace
@@ -23,7 +23,7 @@ from pipeline.report.files.sheet_cells import HEADER_ROW
 from pipeline.report.files.survey_sheet import write_survey
 from pipeline.settings import SettingsError, load_settings
 from pipeline.tools.doctor import diagnose
-from pipeline.tools.house_answers import add_rules, read_rules, to_paste
+from pipeline.tools.house_answers import add_rules, rules_of, to_paste
 from pipeline.tools.sheet_answers import take_sheet
 
 WHEN = date(2031, 5, 1)
@@ -130,7 +130,7 @@ ROOM = {
 
 
 def test_a_workbook_comes_back_as_the_rules_that_were_typed_in(tmp_path: Path) -> None:
-    first, second = read_rules(workbook(tmp_path / "survey.xlsx", HOOKS, LENGTH, ROOM))
+    first, second = rules_of(workbook(tmp_path / "survey.xlsx", HOOKS, LENGTH, ROOM)).rules
     assert (first.object_class, first.hanging, first.said_by) == (("framed",), Hanging.TWO_HOOKS, "Ann")
     assert first.suspension_ratio == Span(low=0.2, best=0.3, high=0.5)
     assert (second.gallery, second.said_on) == (("East", "West"), date(2031, 5, 2))
@@ -138,10 +138,10 @@ def test_a_workbook_comes_back_as_the_rules_that_were_typed_in(tmp_path: Path) -
 
 
 def test_a_workbook_that_nobody_filled_in_has_no_rules(tmp_path: Path) -> None:
-    assert read_rules(workbook(tmp_path / "survey.xlsx")) == ()
+    assert rules_of(workbook(tmp_path / "survey.xlsx")).rules == ()
     openpyxl.Workbook().save(tmp_path / "other.xlsx")
-    assert read_rules(tmp_path / "other.xlsx") == ()
-    assert read_rules(tmp_path / "other.csv") == ()
+    assert rules_of(tmp_path / "other.xlsx").rules == ()
+    assert rules_of(tmp_path / "other.csv").rules == ()
 
 
 @pytest.mark.parametrize(
@@ -161,8 +161,9 @@ def test_a_workbook_that_nobody_filled_in_has_no_rules(tmp_path: Path) -> None:
     ],
 )
 def test_a_row_that_cannot_be_meant_is_named(row: dict[str, object], said: str, tmp_path: Path) -> None:
-    with pytest.raises(CollectionError, match=rf"survey\.xlsx, sheet 'Rules', {said}"):
-        read_rules(workbook(tmp_path / "survey.xlsx", row))
+    fault = rules_of(workbook(tmp_path / "survey.xlsx", row)).faults[0]
+    where = f", {fault.column}" if fault.column else ""
+    assert re.match(said, f"row {fault.row}{where}: {fault.message}; {fault.remedy}")
 
 
 @pytest.fixture
@@ -174,7 +175,7 @@ def config(tmp_path: Path) -> Path:
 
 def test_rules_are_added_once_below_what_stands_there(config: Path, tmp_path: Path) -> None:
     config.chmod(0o600)
-    rules = read_rules(workbook(tmp_path / "survey.xlsx", HOOKS, LENGTH, ROOM))
+    rules = rules_of(workbook(tmp_path / "survey.xlsx", HOOKS, LENGTH, ROOM)).rules
     before = config.read_text(encoding="utf-8")
     added = add_rules(config, rules, dry_run=True)
     assert config.read_text(encoding="utf-8") == before
@@ -189,7 +190,7 @@ def test_rules_are_added_once_below_what_stands_there(config: Path, tmp_path: Pa
 def test_a_sheet_that_says_something_else_than_a_rule_there_changes_nothing(config: Path, tmp_path: Path) -> None:
     add_rules(config, (HouseRule(**{"class": "framed"}, hanging="wire", said_by="Eve", said_on=WHEN),))
     before = config.read_bytes()
-    rules = read_rules(workbook(tmp_path / "survey.xlsx", HOOKS))
+    rules = rules_of(workbook(tmp_path / "survey.xlsx", HOOKS)).rules
     with pytest.raises(
         SettingsError, match=r"1 \(class framed\) and .* 2 \(class framed\) .* wire and hanging two_hooks"
     ):

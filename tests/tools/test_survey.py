@@ -13,7 +13,7 @@ import pytest
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
-from pipeline.analysis.survey import by_gallery, measurables, measurement_requests
+from pipeline.analysis.survey import measurables, measurement_requests
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import add_sheet, read_inventory, replace_inventory, return_to, versions
 from pipeline.collection.reading import Reading
@@ -90,7 +90,6 @@ def test_what_is_missing_comes_first_and_what_is_not_on_display_never() -> None:
     assert (first.object_number, first.field, first.settles_nothing) == ("2", "width_m", False)
     assert first.unlocks > 0
     assert {request.object_number for request in found} == {"1", "2"}
-    assert list(by_gallery(found)) == ["East", "West"]
 
 
 ROCKS = replace(BOX, base_width_m=None, base_depth_m=None, width_m=0.1, depth_m=0.1, cg_height_m=None, friction=0.9,

@@ -15,7 +15,6 @@ _WITHIN = ("element", "term", "type", "definition")
 _LONGEST = 60
 """Characters of the name of a field."""
 _FEWEST = 2
-_SCALARS = (str, int, float, bool)
 
 
 def listed(value: Mapping[str, Any]) -> list[Any] | None:

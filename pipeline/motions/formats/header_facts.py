@@ -49,7 +49,6 @@ _FOOT = 0.3048
 _ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}
 _KINDS = ("W", "S", "L", "B", "D")
 _SIDES = {"N": 1.0, "S": -1.0, "E": 1.0, "W": -1.0, "": 1.0}
-_MOST = {"latitude": 90.0, "longitude": 180.0, "event_latitude": 90.0, "event_longitude": 180.0}
 _LONGEST = 100
 UNSET = 1980
 """Year of clocks that nobody set: an origin on its first day at midnight is none."""

@@ -28,7 +28,7 @@ _COMPONENT = re.compile(r"component=\s*(.*)$")
 _STATION = re.compile(r"station\s*=\s*(.*?)\s*component")
 _EVENT = re.compile(r"^\s*\d{4}\s+\d{1,2}\s+\d{1,2}\s+\d{1,4}\s+([A-Za-z].{0,60}?)\s*$")
 _PEAK = re.compile(rf"\bpk(?: acc)?\s*=\s*({NUMBER})")
-_TEXT, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
+_TEXT, _INTEGER_LINES = 11, 6
 _FORMS = {"0": "SMC of unknown kind", "1": "SMC uncorrected", "2": "SMC corrected"}
 _PRECISE = 8
 """Digits, by the 47th integer, of files whose numbers have fourteen characters in place of ten."""
