@@ -97,7 +97,8 @@ def parted(text: str) -> NamedPlace:
         if found and ROOM.search(text[: found.start()]):
             return NamedPlace(text[: found.start()].rstrip(), text[found.start() :])
         return NamedPlace(text, text if len(spans) > 1 or numbered.match(text) else "")
-    held = next((at for at, (start, end) in enumerate(spans) if at and _tells(text[start:end])), 0)
+    pieces = [text[start:end] for start, end in spans]
+    held = next((at for at, one in enumerate(pieces) if at and (_tells(one) or _OF_WALLS.fullmatch(one))), 0)
     if held:
         return NamedPlace(text[: spans[held - 1][1]], displayed=text[spans[held][0] :])
     behind = _NUMBERED_ROOM.fullmatch(text)
@@ -146,7 +147,7 @@ def beside_case(text: str) -> str:
 
 def _tells(piece: str) -> bool:
     told = told_by(piece)
-    return _OF_WALLS.fullmatch(piece.strip()) is not None or told.support is not None or told.furniture is not None
+    return told.support is not None or told.furniture is not None
 
 
 @cache

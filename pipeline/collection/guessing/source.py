@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import zlib
 from collections.abc import Generator, Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -354,10 +354,12 @@ def columns_in(path: Path, source: dict[str, Any]) -> list[Column]:
 
 def _above_the_names(path: Path, source: dict[str, Any]) -> str:
     """Return the one text of the row above the names of the columns, as a room's name; "" where there is none."""
-    with open_source(
-        path, _plain_mapping(source | {"header_row": source["header_row"] - 1, "header_rows": 1})
-    ) as above:
-        row = next(above.rows, None)
+    row = None
+    # A row without texts is no header.
+    with suppress(CollectionError):
+        higher = source | {"header_row": source["header_row"] - 1, "header_rows": 1}
+        with open_source(path, _plain_mapping(higher)) as above:
+            row = next(above.rows, None)
     alone = row is not None and sum(bool(cell.strip()) for cell in row.cells) == 1
     return first_text(row)[:200] if row is not None and alone else ""
 
