@@ -74,7 +74,8 @@ def shelved(item: Item, row: ObjectClass) -> Estimate | None:
 
 _BOOKSHELF = re.compile(
     r"\b(?:book ?shel(?:f|ves)|bookcases?|Bücherregale?|Bücherschr(?:a|ä)nke?|bibliothèque|rayonnages?|libreria|"
-    r"scaffal[ei]|librería|estantería)\b|本棚|書架|βιβλιοθήκη",
+    r"scaffal[ei]|librería|estantería|"
+    r"(?:standing |upright )?in (?:a |one )?rows?|in Reihen?|en rangée|in fila|en fila)\b|本棚|書架|βιβλιοθήκη",
     re.IGNORECASE,
 )
 """What says that books stand in a row on a shelf."""

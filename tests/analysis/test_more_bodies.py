@@ -101,6 +101,8 @@ def test_books_in_a_row_have_the_room_of_their_shelf() -> None:
     scene, room = classify(row), limit("book_room")
     assert scene.furniture is Furniture.SHELF
     assert scene.parameters["clearance"].value == room.value
+    for words in ("standing in a row on shelf", "in Reihe im Regal"):
+        assert classify(replace(row, displayed=words)).parameters["clearance"].value == room.value
     assert classify(replace(row, displayed="lying in showcase")).parameters["clearance"].value > room.value
 
 

@@ -246,12 +246,16 @@ class Fixing(Measure, ABC):
         """Say whether as much of it is used as there is room for, where its weight is not known for sure."""
         return False
 
+    def suits(self, scene: Scene) -> bool:
+        """Say whether an object of its class can be held so."""
+        return not self.row.classes or scene.object_class in self.row.classes
+
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
         """Propose the fewest and smallest pieces that hold it for sure, then those that do by the best estimates."""
         scene = one.scene
         if scene.support is not Support.FREESTANDING:
             return NOT_FREE
-        if self.row.classes and scene.object_class not in self.row.classes:
+        if not self.suits(scene):
             return refused(N_("objects of its kind cannot be held so"))
         if not may_be_held(scene) or not {"half_width", "cg_height"} <= set(scene.parameters):
             return UNKNOWN_SECTION

@@ -103,6 +103,10 @@ _AT_A_WALL = re.compile(
 """What says of a display that a wall is behind it."""
 
 
+_IF_TOLD = ("table", "object")
+"""Classes of which some stand at a wall, where their display says so: consoles, pier tables, presses (judgement)."""
+
+
 class Brackets(Fixing):
     """Fix its top to the wall behind it."""
 
@@ -118,6 +122,11 @@ class Brackets(Fixing):
         if deep and one.scene.object_class != CASES and not _AT_A_WALL.search(one.scene.item.displayed):
             return refused(N_("it is about as deep as wide: nothing says that it stands at a wall"))
         return super().propose(one, runner)
+
+    def suits(self, scene: Scene) -> bool:
+        """Say whether it is of a class that stands at a wall, or of one that may and is said to."""
+        told = scene.object_class in _IF_TOLD and _AT_A_WALL.search(scene.item.displayed) is not None
+        return told or super().suits(scene)
 
     def reach(self, scene: Scene, pieces: int, size: float, worst: bool) -> Reach:  # noqa: ARG002
         """Return all of them, and their moment about the base."""
