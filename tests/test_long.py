@@ -5,6 +5,7 @@ shows the mechanism from end to end; where none does, it is made cheaper, or tak
 """
 
 import ast
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +36,11 @@ def marks(nodes: list[ast.expr], named: dict[str, str]) -> Iterator[str]:
                 yield named[inner.id]
 
 
-def marked(tree: ast.Module) -> Marked:
+def marked(text: str) -> Marked:
+    if "mark.long" not in text:
+        # To read all files as Python takes seconds.
+        return Marked(frozenset(re.findall(r"^def (test_\w+)", text, re.M)), {}, {})
+    tree = ast.parse(text)
     set_to = {ast.unparse(node.targets[0]): node.value for node in tree.body if isinstance(node, ast.Assign)}
     named = {name: said for name, value in set_to.items() for said in marks([value], {})}
     of_file = named.pop("pytestmark", None)
@@ -62,7 +67,7 @@ def marked(tree: ast.Module) -> Marked:
 def files() -> dict[str, Marked]:
     """The tests of every file, by its path from `tests` without the ending."""
     return {
-        file.relative_to(TESTS).with_suffix("").as_posix(): marked(ast.parse(file.read_text(encoding="utf-8")))
+        file.relative_to(TESTS).with_suffix("").as_posix(): marked(file.read_text(encoding="utf-8"))
         for file in TESTS.rglob("test_*.py")
     }
 
@@ -108,12 +113,12 @@ def test_cases(at): ...
 def test_other(): ...
 def test_short(): ...
 """
-    found = problems({"room/test_a": marked(ast.parse(code))})
+    found = problems({"room/test_a": marked(code)})
     assert len(found) == (2 if problem else 0)
     assert all(problem in one for one in found)
 
 
-def test_every_room_has_more_tests_every_day_than_long_ones(files: dict[str, Marked]) -> None:
+def test_no_room_has_more_long_tests_than_others(files: dict[str, Marked]) -> None:
     for room in {name.partition("/")[0] for name in files if "/" in name}:
         own = [tests for name, tests in files.items() if name.startswith(f"{room}/")]
-        assert 2 * sum(len(tests.whole) for tests in own) < sum(len(tests.names) for tests in own), room
+        assert 2 * sum(len(tests.whole) for tests in own) <= sum(len(tests.names) for tests in own), room

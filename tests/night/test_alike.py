@@ -178,6 +178,7 @@ def pair(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(staff, "pool", lambda **_: nullcontext(Pair()))
 
 
+@pytest.mark.long("test_a_set_is_worked_on_once_and_shown_as_if_each_had_been")
 @pytest.mark.usefixtures("pair")
 def test_where_several_work_what_is_alike_is_still_worked_on_once(tmp_path: Path, assessed: list[str]) -> None:
     settings = museum_of(tmp_path / "set", set_of_vases(), furnished=True, sampled=True)
