@@ -244,8 +244,8 @@ def test_chances_add_up_to_one_and_the_class_is_the_likeliest() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "x" * (1_000_000 if SOAK else 200_000),
-        "a " * (100_000 if SOAK else 20_000),
+        "x" * 1_000_000,
+        "a " * 100_000,
         "\x00\ud7ff\u202e\u0301" * 50,
         "花瓶",
         "((((((",
