@@ -120,6 +120,7 @@ def test_a_set_is_worked_on_once_and_shown_as_if_each_had_been(tmp_path: Path, a
         assert own == together.assessments[number]
 
 
+@pytest.mark.long("night/test_unchanged_nights::test_one_changed_object_costs_only_itself_and_the_rest_is_taken_over")
 def test_of_a_changed_gallery_only_what_changed_is_worked_on(tmp_path: Path, assessed: list[str]) -> None:
     settings = museum_of(tmp_path / "museum", vases(2), sampled=True)
     night(settings)
