@@ -3,8 +3,9 @@ PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.kouros-installed
 PEERS := .venv/.kouros-peers
+BOTH_CORES := $(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: demo test lint rules types ready docs catalogues bench soak audit airflow check-browser clean
+.PHONY: demo test test-long lint rules types ready docs catalogues bench soak audit airflow check-browser clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || { echo "python3 has no venv module: apt-get install python3-venv"; exit 1; }
@@ -23,9 +24,13 @@ $(PEERS): $(STAMP)
 demo: $(STAMP)  ## the whole job on the bundled collection and record; ends with the path of the report
 	$(BIN)/kouros demo
 
-test: $(STAMP) check-browser  ## lint, types, floors and all tests
+test: $(STAMP) check-browser  ## lint, types, floors and every test but those that are long and show what others show
 	@$(MAKE) --no-print-directory --jobs 2 types rules ready
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
+	$(BOTH_CORES) -m "not long"
+
+# They say themselves which test of `make test` shows the same: tests/test_long.py.
+test-long: $(STAMP) check-browser  ## the tests that `make test` leaves out
+	$(BOTH_CORES) -m long
 
 # Types are checked on one core while rules and floors are on the other.
 lint: $(STAMP)
@@ -56,7 +61,7 @@ catalogues: $(STAMP)  ## the languages that travel with Kouros get new phrases, 
 bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks
 
-soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed, two hundred museums changed eight times, every seed and every row that means harm, all tests with all of their samples, the image built and run
+soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed, two hundred museums changed eight times, every seed and every row that means harm, all tests, the long ones too, with all of their samples, the image built and run
 	KOUROS_FUZZ_SECONDS=120 $(BIN)/python -m pytest --numprocesses 2 tests/motions/formats/test_fuzz.py -k damage
 	KOUROS_KILLS=50 $(BIN)/python -m pytest --numprocesses 2 tests/operations/test_interruptions.py -k kill
 	KOUROS_DAMAGES=1000 $(BIN)/python -m pytest tests/operations/test_damage.py
@@ -68,7 +73,7 @@ soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for
 	KOUROS_DRAWS=160 $(BIN)/python -m pytest tests/analysis/test_likelihood.py -k plain_monte_carlo
 	KOUROS_SEEDS=24 $(BIN)/python -m pytest tests/collection/test_known_rows.py tests/report/test_damaged_reports.py
 	KOUROS_HOSTILE=1000 $(BIN)/python -m pytest tests/security/test_hostile_collection.py
-	KOUROS_SOAK=1 $(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
+	KOUROS_SOAK=1 $(BOTH_CORES)
 	KOUROS_IMAGE=1 $(BIN)/python -m pytest -s tests/operations/test_containers.py
 
 # In environments of their own: what audits and what schedules must not decide which versions Kouros is tested with.

@@ -95,7 +95,7 @@ def test_the_record_comes_before_the_rule_and_the_rule_before_the_case_and_the_c
 
 def test_the_kind_alone_is_that_of_the_whole_scene() -> None:
     """Of a real collection, as its records stand, with rules of the house, and with a class that a person gave."""
-    items = carnegie().items[:: 1 if SOAK else 4]
+    items = carnegie().items[:: 1 if SOAK else 10]
     house = rule(medium="bronze", furniture="shelf")
     for told in ({}, {"house": house}, {"decided": ("clock", "Ann")}):
         kinds = [(furniture_kind(item, **told), classify(item, **told).furniture) for item in items]  # type: ignore[arg-type]

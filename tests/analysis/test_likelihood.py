@@ -132,6 +132,7 @@ def strong(seed: int = 5) -> Motion:
     return Motion(0.01, rows, "noise")
 
 
+@pytest.mark.long("test_a_block_under_a_rectangular_pulse_leaves_its_place_as_often_as_the_closed_form_says")
 def test_fifty_objects_agree_with_plain_monte_carlo() -> None:
     """Against independent pseudo-random samples, distributions and loops, and `respond` of each motion.
 

@@ -105,7 +105,9 @@ def blocks(frictions: Array) -> list[Scene]:
     ]
 
 
-@pytest.mark.parametrize("combine", COMBINES)
+@pytest.mark.parametrize(
+    "combine", [pytest.param("max", marks=pytest.mark.long("test_sliding_right_beside_its_capacity")), "mean"]
+)
 def test_sliding_right_beside_its_capacity(motions: tuple[Motion, ...], charts: ChartCache, combine: str) -> None:
     """240 measured frictions: each verdict is that of the history, although most histories are never run."""
     level = LevelMotions("design", combine, motions)
@@ -136,7 +138,9 @@ def test_swings_right_beside_their_capacity(
     same(run(scenes, level, "history")[0], run(scenes, level, "auto", charts)[0])
 
 
-@pytest.mark.parametrize("combine", COMBINES)
+@pytest.mark.parametrize(
+    "combine", [pytest.param("max", marks=pytest.mark.long("test_ranges_of_everything_at_random")), "mean"]
+)
 def test_ranges_of_everything_at_random(motions: tuple[Motion, ...], charts: ChartCache, combine: str) -> None:
     """Objects of all kinds with measured and assumed inputs, some harmed only by falling, some of known orientation."""
     rng = np.random.default_rng(20190706)

@@ -211,6 +211,7 @@ def test_peak_velocity_is_told_where_it_decides() -> None:
     assert harm.dispersion_pgv < harm.dispersion
 
 
+@pytest.mark.long("night/test_crewed_nights::test_a_worker_with_several_threads")
 def test_neither_order_nor_company_nor_workers_change_a_digit() -> None:
     scenes = scenes_on_display()[::29]
     stripes = [stripe(strong(), years=475.0), stripe(strong(6).scaled(1.7, "test"), years=2475.0)]

@@ -46,6 +46,7 @@ def uneven(n: int) -> dict[str, Array]:
     }
 
 
+@pytest.mark.long("test_the_c_program_gives_the_kernels_results")
 @pytest.mark.parametrize(("lift", "samples"), [pytest.param(1.0, 4000, marks=soaked), (4.0, 1500)])
 def test_a_standing_body_does_the_same_in_c(lift: float, samples: int) -> None:
     """The same falls and landings; other numbers apart by 8e-8 at most, measured, and 1e-5 is granted as to rocking.

@@ -123,6 +123,7 @@ def test_what_nothing_says_is_named_all_at_once_and_nothing_is_written(tmp_path:
     np.testing.assert_allclose(motion.acceleration, wanted, atol=1e-9)
 
 
+@pytest.mark.long("cli/test_guess_asks::test_a_terminal_is_asked")
 def test_a_terminal_is_asked_at_most_three_things(tmp_path: Path) -> None:
     files = [str(file) for file in three(tmp_path / "new")]
     ours, theirs = os.openpty()

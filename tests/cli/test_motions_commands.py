@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -36,15 +37,22 @@ def test_without_settings_a_site_must_be_named(tmp_path: Path) -> None:
     assert kouros("motions", "list", folder=tmp_path).returncode == 0
 
 
-def test_show_writes_the_page(tmp_path: Path) -> None:
-    done = kouros("motions", "show", "demo", "--out", "page.html", "--json", folder=tmp_path)
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], str]:
+    """What is told of the demonstration's record, and its page."""
+    folder = tmp_path_factory.mktemp("shown")
+    done = kouros("motions", "show", "demo", "--out", "page.html", "--json", folder=folder)
     assert done.returncode == 0, done.stderr
     answer = json.loads(done.stdout)
     (record,) = answer["records"]
+    return record, (folder / answer["page"]).read_text(encoding="utf-8")
+
+
+def test_show_writes_the_page(shown: tuple[dict[str, Any], str], tmp_path: Path) -> None:
+    record, page = shown
     assert record["highpass_hz"] == 0.1
     assert record["measures"]["pga"] == pytest.approx(0.7 * G, rel=1e-12)
     assert len(record["spectra"]["rotd100"]["psa"]) == len(record["spectra"]["rotd100"]["damping"])
-    page = (tmp_path / answer["page"]).read_text(encoding="utf-8")
     assert "Ridgecrest 2019 M7.1" in page
     wrong = kouros("motions", "show", "demo", "--record", "absent", folder=tmp_path)
     assert wrong.returncode == 4
@@ -161,7 +169,7 @@ def test_compare_says_which_measures_and_verdicts_a_swap_moves(tmp_path: Path) -
     assert "that it did not have on these motions and records" in turned.stdout
 
 
-def test_a_site_is_compared_with_itself_at_another_corner(tmp_path: Path) -> None:
+def test_a_site_is_compared_with_itself_at_another_corner(shown: tuple[dict[str, Any], str], tmp_path: Path) -> None:
     """PGVs of the demonstration's record, high-passed at 0.1 and 0.05 Hz by scipy's sosfiltfilt: 28.0 and 34.2 east."""
     done = kouros("motions", "compare", "demo", "--corner", "0.5", "--json", folder=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -170,8 +178,7 @@ def test_a_site_is_compared_with_itself_at_another_corner(tmp_path: Path) -> Non
     (pair,) = swap["pairs"]
     before, after = pair["measures"]["pgv_x"]
     assert (before, after) == pytest.approx((0.280, 0.342), rel=0.01)
-    shown = kouros("motions", "show", "demo", "--json", folder=tmp_path)
-    (record,) = json.loads(shown.stdout)["records"]
+    record, _ = shown
     assert record["other_corners"]["highpass_hz"] == [0.05, 0.2]
     assert record["other_corners"]["pgd"][1] == pytest.approx(pair["measures"]["pgd_resultant"][1], rel=3e-3)
     alone = kouros("motions", "compare", "demo", folder=tmp_path)

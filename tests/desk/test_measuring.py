@@ -84,6 +84,7 @@ def test_cells_are_taken_or_come_back_with_what_was_typed(running: str, browser:
     assert [one for one in complaints(browser) if "422" not in one] == []
 
 
+@pytest.mark.long("desk/test_paths::test_every_page_fits_and_breaks_no_rule_of_wcag")
 def test_the_cells_fit_and_can_be_touched(running: str, browser: Chrome) -> None:
     for path in (address_of("1.2") + "&open=measure", "/house", "/survey"):
         browser.get(running + path)

@@ -226,7 +226,9 @@ def test_what_swings_hangs_from_what_bears_twice_its_weight() -> None:
     assert 3.0 - 2.0 * (1.0 - swing**2) ** 0.5 < 2.0
 
 
-@pytest.mark.parametrize("mass", [95.0, 2.0])
+@pytest.mark.parametrize(
+    "mass", [95.0, pytest.param(2.0, marks=pytest.mark.long("test_nothing_heavy_is_fixed_to_what_may_fall_itself"))]
+)
 def test_nothing_heavy_is_fixed_to_what_may_fall_itself(motion: Motion, mass: float) -> None:
     """A bust of 95 kg takes a loose pedestal along, which is fastened first; one of 2 kg does not."""
     bust = replace(TOWER, object_name="bust", title="Bust", mass_kg=mass, allowable_stress_pa=5e7,

@@ -61,6 +61,7 @@ def test_nineteen_of_twenty_flips_are_told() -> None:
     assert not tell[~lift].any()
 
 
+@pytest.mark.long("test_nineteen_of_twenty_flips_are_told")
 def test_flips_of_the_worst_direction_are_told() -> None:
     """With unknown orientation it is whether a block falls in any direction that counts: 11 amplitudes, half as strong.
 

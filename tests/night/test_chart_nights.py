@@ -57,6 +57,7 @@ def refuse(*_: object) -> ResponseChart:
     raise AssertionError("built again")
 
 
+@pytest.mark.long("test_the_command_takes_it")
 def test_a_night_by_charts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Verdicts of histories; rocking, which has no chart, by its certificate; the error covers the difference."""
     settings = museum(tmp_path, "chart")

@@ -14,7 +14,7 @@ from pipeline.night.unit_tasks import Assessments
 from pipeline.settings import Settings
 from pipeline.store.results import Stored
 from tests.museum import found, museum_of, night, vases
-from tests.soak import SOAK, soaked
+from tests.soak import SOAK
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning"),
@@ -59,6 +59,7 @@ def files(settings: Settings) -> dict[str, bytes]:
     return out
 
 
+@pytest.mark.long("night/test_jobs::test_findings_do_not_depend_on_the_rest_of_the_collection")
 @pytest.mark.usefixtures("shared")
 def test_two_processes_of_this_machine(alone: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # Those that assess draw the pages as well.
@@ -87,6 +88,7 @@ def of_a_cluster(folder: Path, cluster: LocalCluster) -> Settings:
     return settings
 
 
+@pytest.mark.long("test_a_worker_with_several_threads")
 @pytest.mark.usefixtures("shared")
 def test_a_cluster_given_by_its_address(alone: Settings, cluster: LocalCluster, tmp_path: Path) -> None:
     settings = of_a_cluster(tmp_path / "cluster", cluster)
@@ -96,14 +98,19 @@ def test_a_cluster_given_by_its_address(alone: Settings, cluster: LocalCluster, 
 
 @pytest.mark.usefixtures("shared")
 def test_a_worker_with_several_threads(alone: Settings, tmp_path: Path) -> None:
-    """As `dask worker` has by default: batches that are worked on at once know nothing of each other."""
-    with LocalCluster(n_workers=1, threads_per_worker=4, processes=False, dashboard_address=":0") as made:
+    """As `dask worker` has by default: batches that are worked on at once know nothing of each other.
+
+    It speaks to the night as one of another machine does.
+    """
+    with LocalCluster(
+        n_workers=1, threads_per_worker=4, processes=False, protocol="tcp", dashboard_address=":0"
+    ) as made:
         settings = of_a_cluster(tmp_path / "threads", made)
     assert found(settings).assessments == found(alone).assessments
     assert files(settings) == files(alone)
 
 
-@soaked
+@pytest.mark.long("execute/test_pool::test_a_process_that_is_killed_from_outside_is_replaced")
 @pytest.mark.usefixtures("shared")
 def test_a_worker_that_is_killed_in_the_middle_of_a_night_loses_nothing(
     alone: Settings, cluster: LocalCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

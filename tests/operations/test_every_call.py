@@ -32,6 +32,13 @@ SAMPLE = {
 }
 """Where the first is disturbed, and after how many the next: some thousand calls in all, of which about a dozen."""
 
+DAILY: dict[str, dict[str, list[int]]] = {
+    "run": {"kill": [749, 9999], "full disk": [647, 9999]},
+    "import": {"kill": [17, 9999]},
+    "decide": {"full disk": [13, 9999]},
+}
+"""Of `make test`: a night killed and without room while it writes, and one call of two other verbs."""
+
 NIGHT = 600
 """Calls that the night has at least, for it does have an import, a report and a database, and tidies up."""
 
@@ -48,9 +55,18 @@ def disturbing(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return library
 
 
-def test_a_kill_and_a_full_disk_at_any_call(disturbing: Path, shaking: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "sample",
+    [
+        pytest.param(DAILY, id="a few"),
+        pytest.param(SAMPLE, id="a dozen", marks=pytest.mark.long("test_a_kill_and_a_full_disk_at_any_call")),
+    ],
+)
+def test_a_kill_and_a_full_disk_at_any_call(
+    disturbing: Path, shaking: Path, tmp_path: Path, sample: dict[str, Any]
+) -> None:
     ways = {"kill": [1, STRIDE], "full disk": [1, STRIDE]}
-    attacks: dict[str, Any] = dict.fromkeys(SAMPLE, ways) if STRIDE else SAMPLE
+    attacks: dict[str, Any] = dict.fromkeys(SAMPLE, ways) if STRIDE and sample is SAMPLE else sample
     plan = {"folder": str(tmp_path), "site": str(shaking), "attacks": attacks}
     done = subprocess.run(
         [sys.executable, "-m", "tests.operations.calls", json.dumps(plan)],

@@ -98,6 +98,7 @@ def test_a_night_that_is_stopped_says_so_and_goes_on(
     assert standing(museum).state == "good"
 
 
+@pytest.mark.long("test_a_night_that_is_stopped_says_so_and_goes_on")
 def test_a_first_demonstration_that_is_stopped(tmp_path: Path, shaking: Path) -> None:
     folder = tmp_path / "kouros-demo"
     folder.mkdir()

@@ -13,7 +13,8 @@ import openpyxl
 from pipeline.collection.mapping import PRESETS
 from pipeline.collection.record import KINDS
 
-ROWS = int(os.environ.get("KOUROS_HOSTILE", "150"))
+DAILY = 150
+ROWS = int(os.environ.get("KOUROS_HOSTILE", str(DAILY)))
 """Two for each payload in each field; `make soak` takes a thousand."""
 
 BROKEN = 6
@@ -111,7 +112,8 @@ def payloads(canary: str, outside: Path) -> list[str]:
 
 def rows(payload: list[str]) -> Iterator[dict[str, str]]:
     """Yield the rows; each field gets each payload in its turn, and a tenth of the numbers too."""
-    galleries = payload[:: max(len(payload) // 20, 1)]
+    # Each gallery has a page: twenty in `make soak`, every day half as many.
+    galleries = payload[:: max(len(payload) // (20 if ROWS > DAILY else 10), 1)]
     for number in range(ROWS):
         row = {}
         for place, field in enumerate(FIELDS):

@@ -116,6 +116,7 @@ def test_what_stands_on_an_installed_isolator_is_explained_as_the_night_judged_i
     assert "isolator passes on" in spoken.stdout
 
 
+@pytest.mark.long("test_what_stands_on_an_installed_isolator_is_explained_as_the_night_judged_it")
 def test_furniture_that_is_not_fastened_is_explained_as_the_night_judged_it(tmp_path: Path) -> None:
     """Whether its furniture falls is reasoned too, and that it is fastened first; a scan states no error."""
     settings = workspace(tmp_path, ROWS[:1], furnished=True)

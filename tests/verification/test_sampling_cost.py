@@ -52,6 +52,7 @@ def test_each_number_and_the_rule_are_measured(found: list[SamplingCost]) -> Non
     assert all(0.0 <= one.right <= 1.0 for one in found)
 
 
+@pytest.mark.long("test_each_number_and_the_rule_are_measured")
 def test_the_error_is_that_against_a_run_with_other_random_numbers(
     scenes: list[Scene], found: list[SamplingCost], monkeypatch: pytest.MonkeyPatch
 ) -> None:

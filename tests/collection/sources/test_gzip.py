@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 
 import pytest
@@ -32,7 +33,8 @@ def test_a_packed_file_is_recognised_and_guessed_from(tmp_path: Path) -> None:
     assert guess(tmp_path / "a.xml.gz").mapping.source.format == "lido"
     with pytest.raises(CollectionError, match=r'a\.xml\.gz: a LIDO file.*format = "lido"'):
         read_items(tmp_path / "a.xml.gz", load_mapping("carnegie"))
-    (tmp_path / "c.csv.gz").write_bytes(gzip.compress(bundled_collection().read_bytes()))
+    with bundled_collection().open("rb") as stream:
+        (tmp_path / "c.csv.gz").write_bytes(gzip.compress(b"".join(islice(stream, 300))))
     assert guess(tmp_path / "c.csv.gz").mapping.columns["gallery"].column == "physical_location"
 
 
