@@ -11,7 +11,7 @@ from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.body_rows import ON_EDGE, PAIR, SCREEN, STACK, STANDS, BodyRow, body_of
 from pipeline.tables.rows import any_of
 
-SOFT = ("inflated", "feathers")
+SOFT = ("inflated", "feathers", "foam", "cork", "basketry", "taxidermy")
 """Materials of which rocking harms nothing: judgement."""
 
 

@@ -13,6 +13,7 @@ from pipeline.collection.guessing.short_heads import short_heads
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.places import beside_case, case_in
 from pipeline.collection.reading import read_items
+from pipeline.models.rigid_body import FALLS_IN
 from pipeline.night.importing import Proposed, proposed
 from pipeline.records import Furniture, Hanging, Item, Support
 from pipeline.tables.held_rows import told_by
@@ -257,3 +258,10 @@ def test_a_case_by_its_sign_ahead_of_a_shelf() -> None:
     assert case_in("CG-12 / glass shelf B") == "CG-12"
     assert case_in("armoire 3, étagère 2") == "armoire 3"
     assert case_in("玻璃柜4，托架上") == "玻璃柜4"
+
+
+def test_rocking_alone_harms_no_taxidermy() -> None:
+    bison = replace(listed_item(), object_name="taxidermy mount", height_m=1.83, width_m=0.91, depth_m=2.79)
+    bust = replace(listed_item(), object_name="bust", medium="marble", height_m=0.6, width_m=0.4, depth_m=0.3)
+    assert FALLS_IN in classify(bison).parameters
+    assert FALLS_IN not in classify(bust).parameters
