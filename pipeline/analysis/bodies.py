@@ -1,5 +1,6 @@
 """What is known of the shape of a thing besides its class: a post, a folding screen, a block of one stone, a pair."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -49,6 +50,17 @@ _PIECES = any_of([
 ])  # fmt: skip
 """What names many pieces that stand beside each other."""
 
+_ONE_BEHIND = re.compile(r"\s*:|\s*\(\s*[^\W\d_A-Z]")
+_ONE_BEFORE = re.compile(
+    r"\b(?:from|of|part|piece|aus|von|d'un|d'une|da un|di un|de un|de una)\b[\w\s]{0,20}$", re.IGNORECASE
+)
+"""What stands behind or before the name of a set in that of a piece: "Tea service: plate", "bowl from a tea set"."""
+
+
+def _many(text: str) -> bool:
+    found = _PIECES.search(text)
+    return found is not None and not (_ONE_BEHIND.match(text, found.end()) or _ONE_BEFORE.search(text[: found.start()]))
+
 
 def of_pieces(item: Item, shape: BodyRow | None, support: Support, mount: MountGuess | None) -> str:
     """Return what is said of things that are several and are followed as one, of what stands; "" of others.
@@ -68,7 +80,9 @@ def of_pieces(item: Item, shape: BodyRow | None, support: Support, mount: MountG
         return ""
     if _STACKED.search(item.displayed):
         return say.STACKED()
-    return say.PIECES() if _PIECES.search(f"{item.object_name[:READ]}; {item.title[:READ]}") else ""
+    called = (item.object_name[:READ], item.title[:READ])
+    of_one = any(_PIECES.search(text) and not _many(text) for text in called)
+    return say.PIECES() if not of_one and any(map(_many, called)) else ""
 
 
 _AS_ONE = {PAIR: say.TWO_BODIES, STACK: say.STACKED}
