@@ -55,6 +55,13 @@ _BEFORE, _HEAD = 3, 3
 """Words up to which a material stands ahead of the name of its thing, and letters that its compound leaves."""
 _STONEWARE = ("stein", "vessel")
 """Material and class of a compound that says another: a Steinkrug is of stoneware."""
+_STUFFED = re.compile(
+    r"\bstuffed (?!with)|\b(?:ausgestopft|empaille|naturalise|impagliat|imbalsamat|disecad|empalhad|vycpan|wypchan|чучел"
+    r"|uppstoppa|udstoppe|kitomot)|剥制|剥製|박제"
+)
+_TOY = re.compile(r"\b(?:toys?|dolls?|teddy|plush|cushions?|pillows?|chair|seat|armchair|sofa|fabric|cloth)\b")
+"""What says that an animal is, and what says that a thing is not."""
+_TAXIDERMY = "taxidermy"
 _READ = 400
 """Characters of a name or title that are searched."""
 _DIGIT = re.compile(r"\d")
@@ -120,6 +127,8 @@ def _with(item: Item, said: str, values: AssumedValues) -> Item:
 
 def _told(text: str, of: _Of) -> str | None:
     """Return the words for what a thing is made of that its name or title has; None where it has none."""
+    if _STUFFED.search(fold(text)) and not _TOY.search(fold(text)):
+        return _TAXIDERMY
     parts = [part for part in _PARTS.split(text) if part.strip()]
     for at, part in enumerate(parts):
         bare = is_material(part)
