@@ -211,7 +211,7 @@ def _in_words(item: Item) -> str:
     sides = (("H", item.height_m), ("W", item.width_m), ("D", item.depth_m))
     size = " x ".join(f"{name} {figures(100.0 * value, 4)}" for name, value in sides if value is not None)
     mass = "" if item.mass_kg is None else f", {figures(item.mass_kg, 5)} kg"
-    what = " ".join(filter(None, (item.object_name, f"{item.title[:50]!r}", item.medium[:40])))
+    what = " ".join(filter(None, (item.object_name, item.title and f"{item.title[:50]!r}", item.medium[:40])))
     place = ", ".join(filter(None, dict.fromkeys((item.gallery, item.case, item.displayed))))
     return f"{item.object_number} | {place} | {what} | {f'{size} cm' if size else 'no size'}{mass}"
 
