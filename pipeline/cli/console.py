@@ -139,7 +139,8 @@ def summary_lines(summary: "Summary") -> list[str]:
     lines += [count(number, title) for title, number in summary.measures.items()]
     if summary.worth is not None:
         took = f"; finding them took {summary.survey_seconds:.1f} s" if summary.survey_seconds else ""
-        told = f"measurements may change what is decided, or make a check possible{took}"
+        noun = "measurement" if summary.worth == 1 else "measurements"
+        told = f"{noun} may change what is decided, or make a check possible{took}"
         lines += ["", count(summary.worth, told)]
     lines += effort_lines(summary.efforts)
     if summary.first:
