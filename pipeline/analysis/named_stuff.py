@@ -56,8 +56,8 @@ _BEFORE, _HEAD = 3, 3
 _STONEWARE = ("stein", "vessel")
 """Material and class of a compound that says another: a Steinkrug is of stoneware."""
 _STUFFED = re.compile(
-    r"\bstuffed (?!with)|\b(?:ausgestopft|empaille|naturalise|impagliat|imbalsamat|disecad|empalhad|vycpan|wypchan|чучел"
-    r"|uppstoppa|udstoppe|kitomot)|剥制|剥製|박제"
+    r"\bstuffed (?!with)|\b(?:ausgestopft|empaille|naturalise|impagliat|imbalsamat|disecad|empalhad|vycpan|wypchan"
+    r"|чучел|uppstoppa|udstoppe|kitomot)|剥制|剥製|박제"
 )
 _TOY = re.compile(r"\b(?:toys?|dolls?|teddy|plush|cushions?|pillows?|chair|seat|armchair|sofa|fabric|cloth)\b")
 """What says that an animal is, and what says that a thing is not."""
