@@ -43,8 +43,8 @@ _WALL = re.compile(
 )
 DEEP = 0.25
 """Smaller plan dimension [m] from which what stands by its class hardly hangs flat on a wall: judgement."""
-STANDS_FROM = 1.0
-"""Height [m] from which such a thing stands before the wall that it is fixed to: judgement."""
+THICK, STANDS_FROM = 0.15, 1.0
+"""Smaller plan dimension and height [m] from which it stands before the wall that it is fixed to: judgement."""
 HANGS_FROM = 0.5
 """Largest size [m] from which a title is believed that says that a thing hangs from above: judgement."""
 
@@ -174,10 +174,10 @@ def as_told(item: Item, row: ObjectClass) -> Item:
     if row.support is Support.SUSPENDED and _by_chain_alone(item):
         return replace(item, support=Support.SUSPENDED, hanging=None)
     if row.support is Support.FREESTANDING and WHEN_HELD not in row.models and item.support is Support.HUNG:
-        if item.hanging is Hanging.FIXED and _large(item, STANDS_FROM):
+        if item.hanging is Hanging.FIXED and _large(item, THICK, STANDS_FROM):
             # A wardrobe or a longcase clock that is screwed to the wall stands there, and is held by it.
             return replace(item, support=Support.FASTENED, hanging=None)
-        if item.hanging in (None, Hanging.WIRE) and _large(item, 0.0) and not _named_wall(item):
+        if item.hanging in (None, Hanging.WIRE) and _large(item, DEEP) and not _named_wall(item):
             # A bell, a bicycle or a drum that hangs, and of no wall is told, hangs from above.
             return replace(item, support=Support.SUSPENDED, hanging=None)
     if item.support is not None or item.hanging is not None:
@@ -201,10 +201,10 @@ def _named_wall(item: Item) -> bool:
     return _WALL.search(f"{item.gallery} {item.displayed}") is not None
 
 
-def _large(item: Item, height: float) -> bool:
+def _large(item: Item, depth: float, height: float = 0.0) -> bool:
     """Whether a thing that is told to hang is so deep, and so high, that it hardly hangs flat on a wall."""
     plan = [side for side in (item.width_m, item.depth_m) if side]
-    return len(plan) > 1 and min(plan) >= DEEP and (item.height_m or 0.0) >= height and bool(item.displayed.strip())
+    return len(plan) > 1 and min(plan) >= depth and (item.height_m or 0.0) >= height and bool(item.displayed.strip())
 
 
 def in_case(item: Item, row: ObjectClass) -> bool:

@@ -46,6 +46,25 @@ PARISH = """N°,Descripción,Material y técnica,Medidas aprox.,Lugar dentro del
 6,Óleo Ánimas del Purgatorio,óleo sobre lienzo,2.40 x 1.90 m,Muro norte de la nave
 7,Candelabros,bronce,1.35 m,"Presbiterio, en el piso"
 """
+UNIVERSITY = """Ref,Instrument / specimen,Bldg,Room,Cabinet,Shelf,L x W x H (mm),Weight/kg
+PH-001,Wimshurst machine,Main,Foyer,1,2,520 x 340 x 610,14
+ZO-120,Skeleton of gorilla,Darwin,Museum Rm 1,,,900 x 800 x 1650,35
+ZO-121,Spirit jar: octopus,Darwin,Museum Rm 1,4,3,180 x 180 x 420,9.2
+GE-007,Iron meteorite,Main,Corridor,,,410 x 330 x 300,118
+"""
+FRENCH = """REF;INV;DENO;TITR;TECH;DIMS;EMPL
+1;D 889.1;tableau;Portrait de femme;huile, toile;H. 73, l. 60, H. avec cadre 95, l. avec cadre 82;Salle 4, mur est
+2;D 902.3;statue;Vénus accroupie;marbre;H. 141, l. 83, P. 70, Poids 520 kg;Salle 1, sur socle maçonné
+3;I 77.2;pendule;Pendule au char;bronze;H. 0,46 m, l. 0,52 m, P. 0,14 m;Salle 6, cheminée
+4;D 2001.9;dessin;Étude de mains;pierre noire;H. 28,5, l. 21;Cabinet d'arts graphiques, réserve
+"""
+SWEDISH = """Accnr;Sakord;Benämning;Material;Lokal;Monter;Höjd;Bredd;Djup;Vikt;Anm
+1;Skåp;Hörnskåp, allmoge;furu, målat;Allmogesalen;;198 cm;92 cm;64 cm;ca 60 kg;står fritt
+2;Runsten;Fragment av runsten;sandsten;Entréhallen;;155 cm;70 cm;18 cm;ca 320 kg;stöttad mot vägg, förankrad
+3;Bägare;Snapsbägare;silver;Silverkammaren;M3;9 cm;6 cm;6 cm;;
+4;Båtmodell;Skonert Ellida;trä, tyg;Sjöfartsrummet;M7;88 cm;110 cm;35 cm;9 kg;
+5;Ur;Golvur, Mora;furu, mässing;Allmogesalen;;212 cm;48 cm;25 cm;;fäst i vägg
+"""
 
 
 def listed(folder: Path, text: str) -> tuple[Proposed, dict[str, Item]]:
@@ -173,3 +192,35 @@ def test_places_and_ways_in_one_column_where_no_other_tells_places(tmp_path: Pat
     }
     assert classify(items["3"]).support is Support.SUSPENDED
     assert classify(items["5"]).support is Support.FASTENED
+
+
+def test_a_head_that_is_the_order_of_sizes_alone(tmp_path: Path) -> None:
+    _, items = listed(tmp_path, UNIVERSITY)
+    assert {number: (one.height_m, one.width_m, one.depth_m) for number, one in items.items()} == {
+        "PH-001": (0.61, 0.34, 0.52),
+        "ZO-120": (1.65, 0.8, 0.9),
+        "ZO-121": (0.42, 0.18, 0.18),
+        "GE-007": (0.3, 0.33, 0.41),
+    }
+    assert [one.case for one in items.values()] == ["1", "", "4", ""]
+
+
+def test_codes_of_the_french_register(tmp_path: Path) -> None:
+    _, items = listed(tmp_path, FRENCH)
+    assert [(one.object_name, one.title, one.gallery) for one in items.values()] == [
+        ("tableau", "Portrait de femme", "Salle 4"),
+        ("statue", "Vénus accroupie", "Salle 1"),
+        ("pendule", "Pendule au char", "Salle 6"),
+        ("dessin", "Étude de mains", "Cabinet d'arts graphiques, réserve"),
+    ]
+    assert [one.height_m for one in items.values()] == [0.95, 1.41, 0.46, 0.285]
+    assert [one.on_display for one in items.values()] == [True, True, True, False]
+
+
+def test_a_swedish_list_with_cases(tmp_path: Path) -> None:
+    read, items = listed(tmp_path, SWEDISH)
+    assert not read.guess.left
+    assert [one.case for one in items.values()] == ["", "", "M3", "M7", ""]
+    held = [classify(one).support for one in items.values()]
+    assert held[0] is held[2] is held[3] is Support.FREESTANDING
+    assert held[1] is held[4] is Support.FASTENED

@@ -279,7 +279,9 @@ def named(name: str) -> ColumnMeaning | None:
             return found
     if plain(name) in CALLED:
         return ColumnMeaning("title", _WEAK)
-    return _cut(name) or _beside_frame(name) or _within(name)
+    # "L x W x H (mm)": nothing but the order of sizes.
+    legend = ColumnMeaning(TEXTS, _WEAK) if LEGEND.fullmatch(unit_in(name)[0].strip(" ()")) else None
+    return legend or _cut(name) or _beside_frame(name) or _within(name)
 
 
 def _beside_frame(name: str) -> ColumnMeaning | None:

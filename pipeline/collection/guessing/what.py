@@ -8,6 +8,7 @@ from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.names import ARTIST, CALLED, DESCRIPTION, TEXTS, named, path_of, plain
+from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
 
 SAYING = ("object_name", "classification", "medium", "material")
@@ -171,6 +172,7 @@ def naming_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | 
         and named(one.name) is None
         and len(one.distinct) >= _DIFFERENT * len(one.values)
         and not (one.measured or one.of_machine or one.numbering or one.pictured > _MOST or one.dimensional > _MOST)
+        and placed(one) < _MOST
         and sum(len(text.split()) > 1 for text in one.filled) >= _MOST * len(one.filled)
     ]
     return max(able, key=lambda one: len(one.distinct), default=None)

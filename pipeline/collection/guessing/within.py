@@ -41,7 +41,8 @@ def place_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | N
     """
     taken = {id(column) for column in used}
     able = [one for one in columns if id(one) not in taken and one.filled and not one.prose and named(one.name) is None]
-    able = [one for one in able if len(one.distinct) <= _REPEATED * len(one.filled) and len(one.distinct) > 1]
+    # "Salle 4, mur est" and "Salle 4, cheminée" are one room.
+    able = [one for one in able if 1 < len({parted(text).room for text in one.distinct}) <= _REPEATED * len(one.filled)]
     best = max(able, key=placed, default=None)
     return best if best is not None and placed(best) >= _PLACED else None
 
