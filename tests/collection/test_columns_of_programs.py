@@ -26,6 +26,8 @@ NAMES = {
     "dcterms:extent=dimensions",
     "CollectionSpace": "objectNumber=object_number dimensionSummary=dimensions computedCurrentLocation=gallery",
     "ArchivesSpace": "component_id=object_number extent_dimensions=dimensions",
+    "Joconde (France)": "INV=object_number DENO=object_name TITR=title DIMS=dimensions",
+    "Palissy (France)": "TICO=title DENO=object_name DIMS=dimensions",
     "Sarpur (Iceland)": "Heiti=object_name Stærð=dimensions Efni=medium Staðsetning=gallery",
 }
 
