@@ -111,8 +111,10 @@ class _OneRow:
 
 
 def _denied(text: str, said: re.Match[str]) -> bool:
+    between, blank, _ = said.group().rpartition(" ")  # "tegen de wand, niet verankerd"
     return bool(
         BUT_NOT.search(text[: said.start()])
+        or BUT_NOT.search(between + blank)
         or _NOT_BEHIND.match(text[said.end() :])
         or _NOT_WITHIN.search(said.group())
     )

@@ -279,8 +279,9 @@ def named(name: str) -> ColumnMeaning | None:
             return found
     if plain(name) in CALLED:
         return ColumnMeaning("title", _WEAK)
-    # "L x W x H (mm)": nothing but the order of sizes.
-    legend = ColumnMeaning(TEXTS, _WEAK) if LEGEND.fullmatch(unit_in(name)[0].strip(" ()")) else None
+    # "L x W x H (mm)": nothing but the order of sizes; "Max W" is none.
+    rest = unit_in(name)[0].strip(" ()")
+    legend = ColumnMeaning(TEXTS, _WEAK) if LEGEND.fullmatch(rest) and plain(rest)[:3] != "max" else None
     return legend or _cut(name) or _beside_frame(name) or _within(name)
 
 
