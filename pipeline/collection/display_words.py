@@ -59,7 +59,8 @@ def flag_of(text: str, *, display: bool = False) -> bool | None:
     bool or None
         None for words that are not known.
     """
-    both = [flag_of(part, display=display) for part in _EACH.split(text)] if _EACH.search(text) else []
+    short = len(text) <= _LONGEST_FLAG and _EACH.search(text) is not None
+    both = [flag_of(part, display=display) for part in _EACH.split(text)] if short else []
     if both and both[0] is not None and set(both) == {both[0]}:
         # "Oui / Yes": the same in each of a museum's languages.
         return both[0]

@@ -35,6 +35,8 @@ _NAMING = 0.5
 """Share of a column's texts that name a unit from which each is read with its own."""
 
 _THOUSANDS = {mark: re.compile(rf"[+-]?[1-9]\d{{0,2}}{re.escape(mark)}\d{{3}}", re.ASCII) for mark in ",."}
+ASKED = 200
+"""Different texts of a column that are asked how a thing is held: a word of each is looked for in forty rows."""
 _NEXT = 100
 """A whole number of a column from which its numbers may go on to thousands (judgement)."""
 _COMMA = re.compile(r"(?<![\d,.])\d+,\d{1,2}(?![\d,.])", re.ASCII)
@@ -157,7 +159,7 @@ def tells_display(column: Column) -> bool:
     vocabulary = {one.value for one in CHOICES["support"]}
     some = [text for text in column.distinct if flag_of(text, display=True) is None]
     free = [text for text in some if text.casefold() not in vocabulary]
-    return len(free) >= 0.5 * len(column.distinct) > 0 and any(told_by(text) != HeldAs() for text in free)
+    return len(free) >= 0.5 * len(column.distinct) > 0 and any(told_by(text) != HeldAs() for text in free[:ASKED])
 
 
 def _meant(name: str, text: str) -> str:

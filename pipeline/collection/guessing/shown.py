@@ -8,7 +8,7 @@ import tomlkit
 
 from pipeline.collection.display_words import flag_of, says_away
 from pipeline.collection.guessing.columns import Column, internal
-from pipeline.collection.guessing.fields import MOST_WORDS, tells_display
+from pipeline.collection.guessing.fields import ASKED, MOST_WORDS, tells_display
 from pipeline.collection.guessing.names import named, path_of, plain
 from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.places import case_in, parted
@@ -216,7 +216,8 @@ def _free_to_tell(columns: Sequence[Column], found: Mapping[str, Column]) -> Col
 
 def _of_stores(column: Column) -> bool:
     """Whether a column tells where things are kept that are not on display, by its name or by many of its texts."""
-    return says_away(column.name) or sum(map(says_away, column.distinct)) > _MOST_AWAY * len(column.distinct)
+    some = column.distinct[:ASKED]
+    return says_away(column.name) or sum(map(says_away, some)) > _MOST_AWAY * len(some)
 
 
 def _within(where: Column, room: Column) -> bool:
@@ -231,8 +232,8 @@ def _holds_ways(column: Column) -> bool:
 
 def _tells_ways(column: Column, share: float) -> bool:
     """Whether so many of a column's different texts, and `_FEWEST` at least, tell how a thing is held."""
-    ways = sum(told_by(text) != HeldAs() for text in column.distinct)
-    return ways >= max(_FEWEST, share * len(column.distinct))
+    some = column.distinct[:ASKED]
+    return sum(told_by(text) != HeldAs() for text in some) >= max(_FEWEST, share * len(some))
 
 
 def place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:
