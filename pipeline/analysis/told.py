@@ -41,6 +41,7 @@ _WALL = re.compile(
     r"wall|wand\b|wänd|\bmur|paret|pared|perete|τοίχ|壁|벽|墙|\bzid|стен|стін|ścian|stěn|\bfal|duvar|vegg|vägg|væg|sein",
     re.IGNORECASE,
 )
+_FURNITURE = ("cabinet", "clock", "table", "seat")
 DEEP = 0.25
 """Smaller plan dimension [m] from which what stands by its class hardly hangs flat on a wall: judgement."""
 THICK, STANDS_FROM = 0.15, 1.0
@@ -177,6 +178,9 @@ def as_told(item: Item, row: ObjectClass) -> Item:
         if item.hanging is Hanging.FIXED and _large(item, THICK, STANDS_FROM):
             # A wardrobe or a longcase clock that is screwed to the wall stands there, and is held by it.
             return replace(item, support=Support.FASTENED, hanging=None)
+        if row.name in _FURNITURE and item.hanging is None and _large(item, DEEP, STANDS_FROM) and _named_wall(item):
+            # What is "on the wall, bracketed" and as deep and as high as a wardrobe stands before it.
+            return replace(item, support=Support.FREESTANDING)
         if item.hanging in (None, Hanging.WIRE) and _large(item, DEEP) and not _named_wall(item):
             # A bell, a bicycle or a drum that hangs, and of no wall is told, hangs from above.
             return replace(item, support=Support.SUSPENDED, hanging=None)

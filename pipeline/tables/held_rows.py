@@ -18,6 +18,9 @@ CASES = (
 )
 """Words that name a case where a number follows them, or in a field for cases: else they may be of furniture."""
 
+_BREAKS = ",;，、；"
+"""What parts the pieces of a text, one of which may be a word alone: "floor, not fixed"."""
+
 _STEM = r"\w{0,10}"
 """What ~ stands for in these words: the ending of a stem, or what is written together with it."""
 
@@ -32,6 +35,16 @@ _NOT_BEHIND = re.compile(
 
 _NOT_WITHIN = re.compile(r"m[ae]m[ıi]ş|[ae]tl[ae]n\b", re.IGNORECASE)
 """In a stem's ending that denies it: sabitlenmemiş, rögzítetlen."""
+
+_WALL_CASE = re.compile(
+    r"wall[ -](?:show)?case|Wandvitrine|vitrine murale|vetrina (?:a muro|a parete|murale)|vitrina (?:de pared|mural)"
+    r"|壁面(?:展示)?ケース|壁付?き?ケース|壁柜|壁櫃|벽부장|벽면 ?진열장",
+    re.IGNORECASE,
+)
+"""A case on or in a wall: what is in it does not hang on that."""
+_NUMBERED = re.compile(rf"(?<!\w)(?:{'|'.join(CASES)})\s?(?:no\.?|nr\.?|n°)?\s?\d", re.IGNORECASE)
+_ALONE = "judgement: a wall alone is what it hangs on"
+_ENCLOSED = (Furniture.SHOWCASE, Furniture.SHELF)
 
 _NEAR = 40
 """Characters between two words that belong together."""
@@ -55,8 +68,9 @@ class HeldWords(TableRow):
     Attributes
     ----------
     words : tuple of str
-        One of which stands in the text; * is up to three words, and = before one that it is the whole text.  ~ is how a
-        stem may go on or begin; a/b + c/d are one of the first and one of the others, in either order, near each other.
+        One of which stands in the text; * is up to three words, and = before one that it is the whole text, or a whole
+        piece of it.  ~ is how a stem may go on or begin; a/b + c/d are one of the first and one of the others, in
+        either order, near each other.
     support, hanging, furniture, anchorage, mount
         What they tell.
     source : str
@@ -131,7 +145,8 @@ def _rows() -> tuple[_OneRow, ...]:
 
 
 def _any(words: Sequence[str]) -> str:
-    whole = [rf"^\s*{re.escape(word[1:])}\s*$" for word in words if word.startswith("=")]
+    alone = [re.escape(word[1:]) for word in words if word.startswith("=")]
+    whole = [rf"(?:^|(?<=[{_BREAKS}]))\s*(?:{'|'.join(alone)})\s*(?=$|[{_BREAKS}])"] if alone else []
     some = [
         (word, re.escape(word).replace(r"\*", SOME_WORDS).replace(r"\~", _STEM)) for word in words if word[0] != "="
     ]
@@ -185,7 +200,11 @@ def told_by(text: str) -> HeldAs:
     HeldAs
         Of each thing that which the first row of the table says whose words are there.
     """
+    text = _WALL_CASE.sub("showcase", text)
     found = [told.row for told in _rows() if told.says(text)] if text.strip() else []
+    if _NUMBERED.search(text) or any(row.furniture in _ENCLOSED for row in found):
+        # "East, wall, case 3": what is in a case does not hang on the wall for a word alone.
+        found = [row for row in found if row.source != _ALONE]
     support = next((row.support for row in found if row.support is not None), None)
     if support is None and any(told.denies(text) for told in _rows()):
         return replace(_of(found), support=Support.FREESTANDING)

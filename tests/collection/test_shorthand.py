@@ -14,7 +14,8 @@ from pipeline.collection.guessing.frames import without_frame
 from pipeline.collection.guessing.names import unit_in
 from pipeline.collection.places import NamedPlace, parted
 from pipeline.night.importing import Proposed, proposed
-from pipeline.records import Hanging, Item, Support
+from pipeline.records import Furniture, Hanging, Item, Support
+from pipeline.tables.held_rows import told_by
 
 SECTIONS = """GALLERY 1 - EGYPT,,,,
 No,Object,Dims,Wt,Case
@@ -120,6 +121,7 @@ def test_sizes_between_slashes_and_walls_of_a_room(tmp_path: Path) -> None:
         ("62/31/31", "62 x 31 x 31"),
         ("310 / 420 / –", "310 x 420"),
         ("12,5/8/3", "12,5 x 8 x 3"),
+        ("1500/600/1700", "1500 x 600 x 1700"),
         ("12/05/1998", "12/05/1998"),
         ("1/2", "1/2"),
     ],
@@ -224,3 +226,42 @@ def test_a_swedish_list_with_cases(tmp_path: Path) -> None:
     held = [classify(one).support for one in items.values()]
     assert held[0] is held[2] is held[3] is Support.FREESTANDING
     assert held[1] is held[4] is Support.FASTENED
+
+
+@pytest.mark.parametrize(
+    ("words", "support", "furniture"),
+    [
+        ("Floor, unfixed", Support.FREESTANDING, Furniture.FLOOR),
+        ("wall, 2 hooks", Support.HUNG, None),
+        ("East, wall, case 3", None, None),
+        ("vetrina 3, appeso", Support.HUNG, Furniture.SHOWCASE),
+        ("壁面ケース", None, Furniture.SHOWCASE),
+        ("Wall case 5, shelf 3", None, Furniture.SHOWCASE),
+        ("tegen de wand, niet verankerd", Support.FREESTANDING, Furniture.FLOOR),
+        ("hängt an Haken", Support.HUNG, None),
+    ],
+)
+def test_pieces_of_what_is_said_of_a_display(words: str, support: Support | None, furniture: Furniture | None) -> None:
+    told = told_by(words)
+    assert (told.support, told.furniture) == (support, furniture)
+
+
+def test_positions_that_are_cases_and_thousands_of_grams(tmp_path: Path) -> None:
+    _, items = listed(
+        tmp_path,
+        "資料番号,資料名,材質,展示室,展示位置,固定,寸法 H×W×D (mm),重さ(g)\n"
+        'N-02,市松人形,桐塑,展示室1,ケース3 上段,テグス,410×150×120,"680"\n'
+        'N-03,こけし,木,展示室1,ケース5,ワックス,305×78×78,"410"\n'
+        'N-04,からくり人形,木,展示室2,独立ケース2,底板ねじ止め,620×400×380,"5,200"\n'
+        'N-07,獅子頭,木,ロビー,台上,なし,330×380×410,"3,900"\n',
+    )
+    assert [one.mass_kg for one in items.values()] == [0.68, 0.41, 5.2, 3.9]
+    assert [classify(one).support for one in items.values()] == [Support.FASTENED] * 3 + [Support.FREESTANDING]
+
+
+def test_a_wardrobe_on_the_wall_stands_before_it() -> None:
+    wardrobe = Item(
+        object_number="1", gallery="Stube", title="", object_name="Bauernschrank", on_display=True,
+        displayed="an der Wand, Winkel oben", height_m=1.82, width_m=1.28, depth_m=0.52,
+    )  # fmt: skip
+    assert classify(wardrobe).support is Support.FREESTANDING

@@ -21,8 +21,9 @@ _ENTITY = re.compile(r"&(?:#\d{1,6}|#x[\da-f]{1,5}|[a-z]{2,8}\d{0,2});", re.IGNO
 _OPENS = re.compile(r"\s*[\[{]\s*[\[{\"']")
 _LISTED = re.compile(r"\s*\[\s*[{\"'].*[}\"']\s*\]\s*\Z", re.DOTALL)
 _FIGURE = re.compile(r"\d{1,6}(?:[.,]\d{1,6})?", re.ASCII)
-_SLASHED = re.compile(r"\s*\d+(?:[.,]\d+)?(?:\s*/\s*(?:\d{1,3}(?:[.,]\d+)?|[-–—])){2}\s*", re.ASCII)
-"""All three sides and nothing else, "62/31/31" and "310/420/–"; four figures at the end are a year."""
+_SLASHED = re.compile(r"\s*\d+(?:[.,]\d+)?(?:\s*/\s*(?:\d{1,4}(?:[.,]\d+)?|[-–—])){2}\s*", re.ASCII)
+_DATED = re.compile(r"\s*[0-3]?\d\s*/\s*[0-3]?\d\s*/\s*[12]\d{3}\s*", re.ASCII)
+"""All three sides and nothing else, "62/31/31" and "310/420/–", and a day, which is none."""
 _TOLD = 3
 _FORM = 2
 """Labels with units from which a text is a form."""
@@ -60,7 +61,7 @@ def plain_text(text: str) -> str:
     if len(text) > LONGEST:
         return text
     text = _ENTITY.sub(_unescaped, text)
-    if _SLASHED.fullmatch(text):
+    if _SLASHED.fullmatch(text) and not _DATED.fullmatch(text):
         return " x ".join(part for part in map(str.strip, text.split("/")) if part[0].isdigit())
     if not _OPENS.match(text):
         return _filled_in(text)

@@ -85,7 +85,7 @@ def thousands_in(column: Column, mark: str) -> bool:
     numbers = [one for one in numbers if NUMBER.fullmatch(one)]
     marked = [one for one in numbers if mark in one]
     hundreds = sum(one.isdecimal() and int(one) >= _NEXT for one in numbers)
-    return 0 < len(marked) <= hundreds and all(map(_THOUSANDS[mark].fullmatch, marked))
+    return 0 < len(marked) <= 2 * hundreds and all(map(_THOUSANDS[mark].fullmatch, marked))
 
 
 def images_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:

@@ -233,7 +233,8 @@ def _holds_ways(column: Column) -> bool:
 def _tells_ways(column: Column, share: float) -> bool:
     """Whether so many of a column's different texts, and `_FEWEST` at least, tell how a thing is held."""
     some = column.distinct[:ASKED]
-    return sum(told_by(text) != HeldAs() for text in some) >= max(_FEWEST, share * len(some))
+    ways = sum(told_by(text) != HeldAs() or bool(case_in(text)) for text in some)
+    return ways >= max(_FEWEST, share * len(some))
 
 
 def place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:
