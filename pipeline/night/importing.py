@@ -211,9 +211,17 @@ def _in_words(item: Item) -> str:
     sides = (("H", item.height_m), ("W", item.width_m), ("D", item.depth_m))
     size = " x ".join(f"{name} {figures(100.0 * value, 4)}" for name, value in sides if value is not None)
     mass = "" if item.mass_kg is None else f", {figures(item.mass_kg, 5)} kg"
-    what = " ".join(filter(None, (item.object_name, item.title and f"{item.title[:50]!r}", item.medium[:40])))
-    place = ", ".join(filter(None, dict.fromkeys((item.gallery, item.case, item.displayed))))
+    what = ", ".join(filter(None, (item.object_name, item.title and f"{item.title[:50]!r}", item.medium[:40])))
+    told = [one for one in dict.fromkeys((item.gallery, item.case, item.displayed)) if one]
+    # "Case 7" is not said again before "Case 7, shelf 2".
+    place = ", ".join(one for one in told if not any(_begins(other, one) for other in told))
     return f"{item.object_number} | {place} | {what} | {f'{size} cm' if size else 'no size'}{mass}"
+
+
+def _begins(text: str, words: str) -> bool:
+    """Whether a text begins with whole words of another, and goes on."""
+    rest = text.casefold().removeprefix(words.casefold())
+    return 0 < len(rest) < len(text) and not rest[0].isalnum()
 
 
 def source_of(workspace: Workspace, source: str) -> str:

@@ -57,3 +57,29 @@ def test_a_museum_hears_that_its_words_are_of_a_language_that_is_not_known() -> 
     assert unknown_names(named([*unknown[:10], *["Vase"] * 30])) == ""
     assert unknown_names(named(["Kirnu"] * 19)) == ""
     assert unknown_names([]) == ""
+
+
+@pytest.mark.parametrize(
+    ("case", "display", "place"),
+    [
+        ("Case 7", "Case 7, shelf 2", "Hall, Case 7, shelf 2"),
+        ("Case 7", "case 7", "Hall, Case 7, case 7"),
+        ("Case 1", "Case 12, shelf 2", "Hall, Case 1, Case 12, shelf 2"),
+        ("Case 7", "on shelf 2", "Hall, Case 7, on shelf 2"),
+        ("", "", "Hall"),
+    ],
+)
+def test_a_row_as_understood_says_its_place_once_and_parts_name_and_material(
+    case: str, display: str, place: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "works.csv"
+    path.write_text(
+        "Object number;Object name;Material;Height cm;Room;Case;How displayed\n"
+        f"1;Telescope;brass, glass;62;Hall;{case};{display}\n"
+        "2;Globe;wood, paper;90;Hall;Case 3;free on plinth\n",
+        encoding="utf-8",
+    )
+    (line, _other) = proposed(
+        str(path), choices={"gallery": "Room", "case": "Case", "displayed": "How displayed"}
+    ).examples
+    assert line.split(" | ")[1:3] == [place, "Telescope, brass, glass"]
