@@ -167,6 +167,18 @@ def test_the_frame_counts_and_what_has_none_is_as_it_is(tmp_path: Path) -> None:
     assert (shown["P.4"].support, shown["P.5"].support) == (Support.FASTENED, Support.SUSPENDED)
 
 
+def test_pixels_are_no_sizes_and_the_whole_goes_before_its_image(tmp_path: Path) -> None:
+    _, items = listed(
+        tmp_path,
+        "Acc.no,Title,Medium,Height (cm),Width (cm),Image Height (cm),Image Width (cm),"
+        "Image Height,Image Width,Location\n"
+        "1,The Gale,oil on canvas,104,150,76,122,3000,4200,Gallery 1\n"
+        "2,Great Wave,woodblock print,,,25,38,2800,4100,Gallery 1\n"
+        "3,Fuji,woodblock print,,,26,39,2800,4100,Gallery 1\n",
+    )
+    assert [(one.height_m, one.width_m) for one in items.values()] == [(1.04, 1.5), (0.25, 0.38), (0.26, 0.39)]
+
+
 @pytest.mark.parametrize(
     ("name", "rest", "framed"),
     [

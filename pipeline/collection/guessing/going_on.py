@@ -33,7 +33,7 @@ def goes_on_in(column: Column, columns: Sequence[Column]) -> Column | None:
 
 
 def framed_first(column: Column, columns: Sequence[Column]) -> tuple[Column, ...]:
-    """Return the columns of one size with and without the frame, which counts first: "Framed H", and "Image H".
+    """Return the columns of one size, that with the frame first, that without it last: "Framed H", and "Image H".
 
     Parameters
     ----------
@@ -45,16 +45,14 @@ def framed_first(column: Column, columns: Sequence[Column]) -> tuple[Column, ...
     Returns
     -------
     tuple of Column
-        Two, which tell the same unit; () where there are no such two.
+        Two or three, which tell the same unit; () where there are no such columns.
     """
     what, unit = named(column.name), unit_in(column.name)[1]
-    if what is None:
-        return ()
-    framed: list[tuple[int, int, Column]] = []
-    others: list[tuple[int, int, Column]] = []
+    levels: dict[int, tuple[int, int, Column]] = {}
     for place, one in enumerate(columns):
         meant, (name, its) = named(one.name), unit_in(one.name)
-        if one.filled and its == unit and meant is not None and meant.field == what.field:
+        if one.filled and its == unit and meant is not None and what is not None and meant.field == what.field:
             told = without_frame(name)
-            (framed if told is not None and told[1] else others).append((meant.rank, place, one))
-    return (min(framed)[2], min(others)[2]) if framed and others else ()
+            level = 1 if told is None else 0 if told[1] else 2
+            levels[level] = min(levels.get(level, (meant.rank, place, one)), (meant.rank, place, one))
+    return tuple(levels[level][2] for level in sorted(levels)) if len(levels) > 1 else ()

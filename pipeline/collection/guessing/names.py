@@ -287,10 +287,13 @@ def named(name: str) -> ColumnMeaning | None:
 
 def _beside_frame(name: str) -> ColumnMeaning | None:
     """Return the side, or the weight, that a name tells beside whether the frame counts, which is meant rather."""
-    told = without_frame(unit_in(name)[0])
+    rest, unit = unit_in(name)
+    told = without_frame(rest)
     what = None if told is None else _names().get(plain(told[0]))
     if what is None or told is None or not (what.field == LENGTH or units_of(what.field)):
         return None
+    if not told[1] and unit is None:
+        return None  # "Image Height" may be in pixels.
     return ColumnMeaning(what.field, what.rank if told[1] else what.rank + _WEAK)
 
 
