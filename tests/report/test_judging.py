@@ -40,6 +40,13 @@ def test_a_curve_in_words_and_numbers() -> None:
     assert picture.findtext("title") == "1: Rocking"
 
 
+def test_a_curve_of_an_upper_floor_says_whose_shaking_it_is_by() -> None:
+    one = of(CURVE)
+    above = replace(one, scene=replace(one.scene, floor="<b>2nd"))  # type: ignore[attr-defined, type-var]
+    (view,) = fragility_views(above, Units(), drawn=True)  # type: ignore[arg-type]
+    assert view.sentence.endswith("; in g as felt on the floor <b>2nd")
+
+
 def test_probabilities_of_the_lognormal() -> None:
     """Truth: Phi of one and two standard deviations, from tables."""
     assert CURVE.probability(0.0) == 0.0
