@@ -97,7 +97,7 @@ def fragility_views(assessment: Assessment, units: Units, *, drawn: bool) -> tup
     # Of what is only bounded there is no curve.
     views = [_view(f, number if drawn and i == 0 and not f.bound else "", units) for i, f in enumerate(told)]
     if assessment.scene.floor:
-        # What a floor passes on is scaled with it: its peak, and not that of the ground, which is less below an upper one.
+        # What a floor passes on is scaled with it: its peak, and not that of the ground.
         of_floor = _("in g as felt on the floor %(floor)s") % {"floor": clean(assessment.scene.floor)}
         views = [replace(view, sentence=f"{view.sentence}; {of_floor}") for view in views]
     states = _state_chances(assessment)
