@@ -67,7 +67,7 @@ def test_a_guess_is_shown_and_written_where_told(run: Run, tmp_path: Path) -> No
     assert shown.returncode == 0
     assert "26 rows, 25 objects, 1 refused, 5 doubtful; 10 of them as understood:" in shown.stdout
     assert "refused: tms.csv, row 26 (line 27): not a row of a CSV file" in shown.stdout
-    assert "76.37.5.K | Location not recorded | bracelet 'Single-coil Bracelet' bronze" in shown.stdout
+    assert "76.37.5.K | Location not recorded | bracelet, 'Single-coil Bracelet', bronze" in shown.stdout
     # Sheet, from its own columns of the file: 19 7/8 x 13 11/16 in.
     assert "81.12.1.E | Location not recorded | print" in shown.stdout
     assert "H 50.5 x W 34.7 cm" in shown.stdout
