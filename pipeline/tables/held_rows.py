@@ -125,10 +125,11 @@ class _OneRow:
 
 
 def _denied(text: str, said: re.Match[str]) -> bool:
-    between, blank, _ = said.group().rpartition(" ")  # "tegen de wand, niet verankerd"
+    # Of two words that belong together the other one may be denied: "tegen de wand, niet verankerd".
+    _, comma, between = said.group().rpartition(" ")[0].rpartition(",")
     return bool(
         BUT_NOT.search(text[: said.start()])
-        or BUT_NOT.search(between + blank)
+        or (comma and BUT_NOT.search(f"{between} "))
         or _NOT_BEHIND.match(text[said.end() :])
         or _NOT_WITHIN.search(said.group())
     )
