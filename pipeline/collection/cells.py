@@ -25,7 +25,7 @@ from pipeline.records import ContactPolygon, Origin, Problem, Provenance
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
 _NOTED = re.compile(r"\s*(?P<number>[^()]*\d[^()]*?)\s*(?P<note>\([^()\d]*[^\W\d_]{2}[^()\d]*\))\s*")
 """A number with a note in brackets behind it that has no number of its own: 5,3 (com pires)."""
-_GROUPED = {mark: re.compile(rf"[+-]?[1-9]\d{{0,2}}(?:{re.escape(mark)}\d{{3}})+(?!\d)", re.ASCII) for mark in ".,"}
+GROUPED = {mark: re.compile(rf"[+-]?[1-9]\d{{0,2}}(?:{re.escape(mark)}\d{{3}})+(?!\d)", re.ASCII) for mark in ".,"}
 """Thousands parted by a mark: 1,450 and 1.450; by the decimal mark the same characters are another number."""
 _SPACED = re.compile(r"[+-]?[1-9]\d{0,2}(?:[ \u00a0\u2009\u202f'\u2019]\d{3})+(?=[.,]\d+\Z|\Z)", re.ASCII)
 """Thousands parted by a blank or an apostrophe, which can be nothing else."""
@@ -373,7 +373,7 @@ class Cells:
                 return value
         elif not _INFINITE.fullmatch(plain):
             hint = "write numbers without units or thousands separators"
-            if not self.thousands and _GROUPED["." if self.decimal == "," else ","].match(text):
+            if not self.thousands and GROUPED[parting_mark(self.decimal)].match(text):
                 hint += ", or where thousands are parted so say thousands = true in the mapping, [source]"
             if self.decimal == "." and "," in text:
                 hint += ', and if the comma is the decimal mark say decimal = "," in the mapping, [source]'
@@ -387,7 +387,7 @@ class Cells:
 
     def _plain(self, text: str) -> str:
         text = unspaced(text)
-        found = _GROUPED["." if self.decimal == "," else ","].match(text) if self.thousands else None
+        found = GROUPED[parting_mark(self.decimal)].match(text) if self.thousands else None
         if found is not None:
             text = re.sub("[.,]", "", found.group()) + text[found.end() :]
         # A dot in a file with decimal commas separates thousands or is a slip: both are refused, not guessed.
@@ -408,6 +408,11 @@ class Cells:
     def _note(self, name: str, column: ColumnMap, message: str, remedy: str) -> None:
         source = " + ".join(_show(part) for part in column.sources)
         self.problems.append(Problem(name, f"column {source}: {message}", remedy))
+
+
+def parting_mark(decimal: str) -> str:
+    """Return which of point and comma may part thousands: the one that is not the decimal mark."""
+    return "." if decimal == "," else ","
 
 
 def unspaced(text: str) -> str:

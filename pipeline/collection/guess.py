@@ -9,6 +9,7 @@ from typing import Any
 
 import tomlkit
 
+from pipeline.collection.cells import parting_mark
 from pipeline.collection.display_words import says_away
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.by_values import by_values, perhaps_sizes, repeated_in, second_number, unique_in
@@ -170,7 +171,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
     if decimal == ",":
         source["decimal"] = decimal
         told.sure.append("decimal comma, as most numbers have it")
-    mark = "." if decimal == "," else ","
+    mark = parting_mark(decimal)
     parted = [column for column in columns if column.numeric and thousands_in(column, mark)]
     if parted:
         source["thousands"] = True

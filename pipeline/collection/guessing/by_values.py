@@ -8,8 +8,8 @@ from functools import cache
 from itertools import pairwise
 
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.guessing.columns import Column, internal
-from pipeline.collection.guessing.names import DESCRIPTION, TEXTS, named
+from pipeline.collection.guessing.columns import Column, internal, untaken
+from pipeline.collection.guessing.names import DESCRIPTION, TEXTS, called, named
 from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
 from pipeline.tables.material_words import folded, material_words
@@ -53,8 +53,8 @@ def by_values(
         Field -> its column, and what its cells are in words.
     """
     out: dict[str, tuple[Column, str]] = {}
-    called = {name for name in ("title", "object_name", "classification") if name in found and found[name].filled}
-    if not called and not {"object_name", "title"} & chosen.keys():
+    naming = {name for name in ("title", "object_name", "classification") if name in found and found[name].filled}
+    if not naming and not {"object_name", "title"} & chosen.keys():
         able = _likeliest(columns, found.values(), things)
         if able is not None:
             out["object_name"] = able, "most of its cells name things"
@@ -66,28 +66,16 @@ def by_values(
 
 
 def _likeliest(columns: Sequence[Column], used: Iterable[Column], share: Callable[[Column], float]) -> Column | None:
-    taken = {id(column) for column in used}
     able = [
         (share(one), -one.length, one)
-        for one in columns
-        if id(one) not in taken
-        and (named(one.name) is None or (share is materials and _describes(one)))
+        for one in untaken(columns, used)
+        if (named(one.name) is None or (share is materials and called(one.name, DESCRIPTION)))
         and len(one.distinct) >= _FEWEST
         and not (one.measured or one.of_machine or one.prose or one.pictured > _MOSTLY or one.dimensional > _MOSTLY)
         and placed(one) < _MOSTLY
     ]
     best = max(able, key=lambda one: one[:2], default=None)
     return best[2] if best is not None and best[0] >= _MOSTLY else None
-
-
-def _of_sizes(column: Column) -> bool:
-    what = named(column.name)
-    return what is not None and what.field == TEXTS and column.sized > _MOSTLY
-
-
-def _describes(column: Column) -> bool:
-    what = named(column.name)
-    return what is not None and what.field == DESCRIPTION
 
 
 def _share(column: Column, says: Callable[[str], bool]) -> float:
@@ -166,7 +154,7 @@ def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column])
             dated = _dated(one) >= _MOSTLY
             number = one.numbering and not dated
             return (
-                one.dimensional > _MOSTLY or _of_sizes(one),
+                one.dimensional > _MOSTLY or (called(one.name, TEXTS) and one.sized > _MOSTLY),
                 sentences or dated,
                 id(one) in fields,
                 not number,

@@ -17,6 +17,7 @@ from pipeline.collection.guessing.names import (
     LENGTH,
     TEXTS,
     ColumnMeaning,
+    called,
     complements,
     is_code,
     is_length,
@@ -332,6 +333,12 @@ def internal(column: Column) -> bool:
     return what is not None and what.internal
 
 
+def untaken(columns: Sequence[Column], used: Iterable[Column]) -> list[Column]:
+    """Return the columns that are none of those in use, in the order of the source."""
+    taken = {id(column) for column in used}
+    return [column for column in columns if id(column) not in taken]
+
+
 def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> list[Column]:
     """Return the columns called dimensions that hold some; else the one whose texts are mostly such.
 
@@ -347,12 +354,11 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
     list of Column
         In the order of the source.
     """
-    taken = {id(column) for column in used}
-    free = [c for c in columns if id(c) not in taken and c.name != OTHER and not c.of_machine]
-    called = [c for c in free if (what := named(c.name)) is not None and what.field == TEXTS and c.sized > 0.2]
+    free = [c for c in untaken(columns, used) if c.name != OTHER and not c.of_machine]
+    so_called = [c for c in free if called(c.name, TEXTS) and c.sized > 0.2]
     words = [c for c in free if c.name.rpartition(".")[2] == IN_WORDS and c.filled]
-    if called or words:
-        return called or words
+    if so_called or words:
+        return so_called or words
     # "42.2 cm" of a column of lengths would be read as a number without a label, and so as a height.
     free = [column for column in free if not is_length(column.name)]
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
@@ -392,8 +398,7 @@ def prose_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> Co
     Column or None
         None where none tells the sizes of one object in ten.
     """
-    taken = {id(column) for column in used}
-    able = [column for column in columns if id(column) not in taken and column.prose]
+    able = [column for column in untaken(columns, used) if column.prose]
     return _telling_most(able, lambda column: column.told)
 
 
@@ -414,8 +419,7 @@ def sentences_of_dimensions(columns: Sequence[Column], told: Sequence[Column], u
     Column or None
         None where there are fewer than `FEWEST_TOLD` such objects, or they are less than a tenth of those without.
     """
-    taken = {id(column) for column in (*told, *used)}
-    able = [column for column in columns if id(column) not in taken and (column.prose or _describes(column))]
+    able = [one for one in untaken(columns, (*told, *used)) if one.prose or called(one.name, DESCRIPTION)]
     if not told or not able:
         return None
     bare = [not any(tells(cell) for cell in cells) for cells in zip(*(one.values for one in told), strict=True)]
@@ -425,11 +429,6 @@ def sentences_of_dimensions(columns: Sequence[Column], told: Sequence[Column], u
     ]
     most, column = max(often, key=lambda pair: pair[0])
     return column if most >= FEWEST_TOLD and most >= 0.1 * sum(bare) else None
-
-
-def _describes(column: Column) -> bool:
-    what = named(column.name)
-    return what is not None and what.field == DESCRIPTION
 
 
 def _tells_sides(text: str) -> bool:

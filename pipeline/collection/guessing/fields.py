@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 
 import tomlkit
 
+from pipeline.collection.cells import GROUPED
 from pipeline.collection.display_words import flag_of, says_away, says_flags, tells_nothing
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.guessing.columns import NUMBER, Column
+from pipeline.collection.guessing.columns import NUMBER, Column, untaken
 from pipeline.collection.guessing.going_on import framed_first, goes_on_in
-from pipeline.collection.guessing.names import TEXTS, bare, named, unit_in
+from pipeline.collection.guessing.names import TEXTS, bare, called, unit_in
 from pipeline.collection.guessing.questions import Question, asked_unit
 from pipeline.collection.guessing.units import FEET
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
@@ -34,7 +35,6 @@ _HELD = {"furniture_anchorage": "anchorage"}
 _NAMING = 0.5
 """Share of a column's texts that name a unit from which each is read with its own."""
 
-_THOUSANDS = {mark: re.compile(rf"[+-]?[1-9]\d{{0,2}}{re.escape(mark)}\d{{3}}", re.ASCII) for mark in ",."}
 ASKED = 200
 """Different texts of a column that are asked how a thing is held: a word of each is looked for in forty rows."""
 _NEXT = 100
@@ -51,8 +51,7 @@ def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:
     commas = points = 0
     grouped = False
     for column in columns:
-        what = named(column.name)
-        if what is not None and what.field == "object_number":
+        if called(column.name, "object_number"):
             # 1990.4 is the fourth object of that year.
             continue
         if thousands_in(column, ","):
@@ -63,9 +62,9 @@ def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:
         for number in column.values:
             # What the source itself holds as a number says nothing of how people write one.
             if not isinstance(number, TypedNumber) and NUMBER.fullmatch(number.strip()):
-                commas += "," in number and not (parted and _THOUSANDS[","].fullmatch(number.strip()))
+                commas += "," in number and not (parted and GROUPED[","].fullmatch(number.strip()))
                 points += "." in number
-        if not column.numeric and (column.dimensional > 0.2 or (what is not None and what.field == TEXTS)):
+        if not column.numeric and (column.dimensional > 0.2 or called(column.name, TEXTS)):
             for text in column.filled:
                 commas += len(_COMMA.findall(text))
                 points += len(_POINT.findall(text))
@@ -78,14 +77,13 @@ def thousands_in(column: Column, mark: str) -> bool:
     column : of numbers
     mark : of "," and "."
     """
-    what = named(column.name)
-    if what is not None and what.field == "object_number":
+    if called(column.name, "object_number"):
         return False
     numbers = [one.strip() for one in column.filled if not isinstance(one, TypedNumber)]
     numbers = [one for one in numbers if NUMBER.fullmatch(one)]
     marked = [one for one in numbers if mark in one]
     hundreds = sum(one.isdecimal() and int(one) >= _NEXT for one in numbers)
-    return 0 < len(marked) <= 2 * hundreds and all(map(_THOUSANDS[mark].fullmatch, marked))
+    return 0 < len(marked) <= 2 * hundreds and all(map(GROUPED[mark].fullmatch, marked))
 
 
 def images_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
@@ -103,8 +101,7 @@ def images_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | 
     Column or None
         Of several the one that is filled most; a large picture before a small one.
     """
-    taken = {id(column) for column in used}
-    able = [one for one in columns if id(one) not in taken and one.filled and one.pictured > 0.8]
+    able = [one for one in untaken(columns, used) if one.filled and one.pictured > 0.8]
     return max(able, key=lambda one: (len(one.filled), "thumb" not in one.name.casefold()), default=None)
 
 
@@ -147,8 +144,7 @@ def flag_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | No
     -------
     Column or None
     """
-    taken = {id(column) for column in used}
-    return next((one for one in columns if id(one) not in taken and one.filled and says_flags(one.filled)), None)
+    return next((one for one in untaken(columns, used) if one.filled and says_flags(one.filled)), None)
 
 
 def tells_display(column: Column) -> bool:

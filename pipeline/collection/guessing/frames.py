@@ -17,7 +17,7 @@ _UNFRAMED = re.compile(
     r"|hoja|çerçevesiz|画面|本紙)(?=$|[\s)\],_-])",
     re.IGNORECASE,
 )
-"""What a picture is without its frame; the longer of two such words counts."""
+"""What a picture is without its frame, which is looked for first: "without frame" has the frame in it."""
 _LETTERS = {"h": "height", "w": "width", "b": "width", "d": "depth", "t": "depth", "p": "depth"}
 
 

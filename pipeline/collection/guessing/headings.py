@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pipeline.collection.display_words import says_away
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.fields import tells_display
-from pipeline.collection.guessing.names import named, outright
+from pipeline.collection.guessing.names import called, outright
 from pipeline.collection.sources.headings import HEADING, first_text, is_heading
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.sheets import SHEET
@@ -65,8 +65,7 @@ def _headings(rows: Sequence[Row]) -> list[str]:
 
 
 def _names_place(text: str) -> bool:
-    what = named(text)
-    return says_away(text) or (what is not None and what.field == "gallery")
+    return says_away(text) or called(text, "gallery")
 
 
 def place_by_heading(found: dict[str, Column], columns: Sequence[Column]) -> str:

@@ -105,8 +105,13 @@ _CRAFT = re.compile(r"te(?:ch|k|c|h|hn)ni|τεχνικ|техник|tekniik|技�
 
 def is_length(name: str) -> bool:
     """Whether a column is of lengths, which no field has: the depth takes them where no other column is for it."""
+    return called(name, LENGTH)
+
+
+def called(name: str, field: str) -> bool:
+    """Whether the name of a column says that it is of a field, or of what the module names besides: DESCRIPTION."""
     what = named(name)
-    return what is not None and what.field == LENGTH
+    return what is not None and what.field == field
 
 
 def is_side(name: str) -> bool:

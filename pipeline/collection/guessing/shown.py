@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import tomlkit
 
 from pipeline.collection.display_words import flag_of, says_away
-from pipeline.collection.guessing.columns import Column, internal
+from pipeline.collection.guessing.columns import Column, internal, untaken
 from pipeline.collection.guessing.fields import ASKED, MOST_WORDS, tells_display
 from pipeline.collection.guessing.names import named, path_of, plain
 from pipeline.collection.guessing.notes import GuessNotes
@@ -206,8 +206,7 @@ def ways_beside(columns: Sequence[Column], found: Mapping[str, Column], told: Gu
 
 def _free_to_tell(columns: Sequence[Column], found: Mapping[str, Column]) -> Column | None:
     """Return the column that no field takes, most of whose texts tell how things are held."""
-    taken = {id(column) for column in found.values()}
-    free = [one for one in columns if id(one) not in taken and one.filled and not one.prose]
+    free = [one for one in untaken(columns, found.values()) if one.filled and not one.prose]
     able = [one for one in free if (what := named(one.name)) is None or (what.field in _MAY_TELL and not what.internal)]
     # Where a thing is kept while it is not on display tells nothing of how it is shown.
     able = [one for one in able if not _of_stores(one)]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
-from pipeline.collection.guessing.columns import Column
+from pipeline.collection.guessing.columns import Column, untaken
 from pipeline.collection.guessing.names import ARTIST, CALLED, DESCRIPTION, TEXTS, named, path_of, plain
 from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
@@ -164,12 +164,10 @@ def naming_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | 
     used : iterable of Column
         Those that are fields already.
     """
-    taken = {id(column) for column in used}
     able = [
         one
-        for one in columns
-        if id(one) not in taken
-        and named(one.name) is None
+        for one in untaken(columns, used)
+        if named(one.name) is None
         and len(one.distinct) >= _DIFFERENT * len(one.values)
         and not (one.measured or one.of_machine or one.numbering or one.pictured > _MOST or one.dimensional > _MOST)
         and placed(one) < _MOST

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from pipeline.collection.display_words import says_away
-from pipeline.collection.guessing.columns import Column
+from pipeline.collection.guessing.columns import Column, untaken
 from pipeline.collection.guessing.names import DESCRIPTION, named
 from pipeline.collection.guessing.questions import Question
 from pipeline.collection.places import LONGEST, ROOM, parted
@@ -39,8 +39,7 @@ def place_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | N
     -------
     Column or None
     """
-    taken = {id(column) for column in used}
-    able = [one for one in columns if id(one) not in taken and one.filled and not one.prose and named(one.name) is None]
+    able = [one for one in untaken(columns, used) if one.filled and not one.prose and named(one.name) is None]
     # "Salle 4, mur est" and "Salle 4, cheminée" are one room.
     able = [one for one in able if 1 < len({parted(text).room for text in one.distinct}) <= _REPEATED * len(one.filled)]
     best = max(able, key=placed, default=None)
@@ -86,10 +85,9 @@ def parting(columns: Sequence[Column], used: Iterable[Column], place: Column | N
     """
     if place is None or len(place.filled) < _FEWEST or len(place.distinct) == len(place.filled):
         return None
-    taken = {id(column) for column in used}
-    for column in columns:
+    for column in untaken(columns, used):
         words = column.distinct
-        if id(column) in taken or not 1 < len(words) <= _MOST_WORDS or len(column.filled) < len(column.values):
+        if not 1 < len(words) <= _MOST_WORDS or len(column.filled) < len(column.values):
             continue
         if column.units:
             continue
