@@ -155,7 +155,7 @@ def body(
     Returns
     -------
     BodyRow or None
-        None for what does not stand and is no such thing as weighs alike however held, and for what a museum's own row says.
+        None for what a museum's own row says, and for what does not stand, unless it weighs alike however it is held.
     """
     if row.own or support not in (Support.FREESTANDING, Support.FASTENED):
         return None

@@ -241,10 +241,8 @@ def test_a_kind_weighs_what_it_does(
     assert 1.0 / 3.0 <= mass.value / kilograms <= 3.0
 
 
-@pytest.mark.parametrize(
-    ("name", "medium"), [("Tavolo con piano intarsiato", "legno"), ("Bell beaker", "bronze"), ("Trommel", "bronze")]
-)
-def test_a_word_of_a_kind_within_another_says_nothing(name: str, medium: str) -> None:
-    item = Item("1", "G", object_name=name, medium=medium, height_m=0.8, width_m=0.5, depth_m=0.5)
-    note = classify(item).parameters["mass"].note
-    assert "filling 0.18 " not in note and "filling 0.08 " not in note and "filling 0.01 " not in note
+def test_the_top_of_an_italian_table_is_no_piano() -> None:
+    item = Item("1", "G", object_name="Tavolo con piano intarsiato", medium="legno", height_m=0.8, width_m=1.5,
+                depth_m=0.8)  # fmt: skip
+    table_fill = assumed().classes["table"].fill
+    assert f"filling {table_fill:g} of its outline" in classify(item).parameters["mass"].note
