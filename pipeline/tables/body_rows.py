@@ -27,6 +27,9 @@ STANDS = ("harness", "costume", "stand")
 ON_EDGE = ("panel", "slab")
 """What hangs by its class and stands on its edge, as deep as it is recorded."""
 
+HELD = ("wind", "stringed", "footwear")
+"""What weighs what its kind does, whether it stands or a mount holds it."""
+
 _NUMBERS = (
     *(f"{kind}_{end}" for kind in ("cg", "base", "section") for end in ("ratio", "low", "high")),
     *("fill", "fill_low", "fill_high"),

@@ -206,3 +206,43 @@ def test_bodies_name_classes_and_materials_that_there_are() -> None:
     for row in table("bodies"):
         assert set(filter(None, row["classes"].split("|"))) <= set(assumed().classes)
         assert set(filter(None, row["materials"].split("|"))) <= set(assumed().materials)
+
+
+@pytest.mark.parametrize(
+    ("name", "medium", "sizes", "kilograms"),
+    [
+        # What such things weigh by makers' and dealers' data, from memory: to about a quarter.
+        ("Reflecting telescope", "brass", (1.68, 0.9, 2.2), 75.0),
+        ("French horn", "brass", (0.36, 0.5, 0.35), 2.5),
+        ("Trombone", "brass", (0.25, 1.15, 0.22), 1.6),
+        ("Violin", "maple, spruce", (0.59, 0.21, 0.1), 0.45),
+        ("Double bass", "maple, spruce", (1.83, 0.68, 0.45), 11.0),
+        ("Kettledrum", "copper, skin", (0.85, 0.66, 0.66), 30.0),
+        ("Church bell", "bronze", (0.64, 0.7, 0.7), 200.0),
+        ("Cannon barrel", "iron", (0.5, 0.5, 2.7), 1700.0),
+        ("Field cannon", "bronze", (1.4, 1.9, 3.2), 1200.0),
+        ("Meteorite", "iron", (0.4, 0.35, 0.3), 160.0),
+        ("Grand piano", "rosewood", (1.01, 2.74, 1.57), 480.0),
+        ("Grand piano", "", (1.01, 2.74, 1.57), 480.0),
+        ("Ship model", "wood", (0.95, 0.42, 1.1), 12.0),
+        ("Rocking horse", "wood", (1.1, 0.4, 1.4), 30.0),
+        ("Shoes", "leather", (0.12, 0.2, 0.27), 0.7),
+        ("Teddy bear", "", (0.5, 0.3, 0.25), 0.9),
+    ],
+)
+def test_a_kind_weighs_what_it_does(
+    name: str, medium: str, sizes: tuple[float, float, float], kilograms: float
+) -> None:
+    """Within the range and a factor of 3 of the best estimate; by class and material alone some are 10 times off."""
+    height, width, depth = sizes
+    item = Item("1", "G", object_name=name, medium=medium, height_m=height, width_m=width, depth_m=depth)
+    mass = classify(item).parameters["mass"]
+    assert mass.low <= kilograms <= mass.high
+    assert 1.0 / 3.0 <= mass.value / kilograms <= 3.0
+
+
+def test_the_top_of_an_italian_table_is_no_piano() -> None:
+    item = Item("1", "G", object_name="Tavolo con piano intarsiato", medium="legno", height_m=0.8, width_m=1.5,
+                depth_m=0.8)  # fmt: skip
+    table_fill = assumed().classes["table"].fill
+    assert f"filling {table_fill:g} of its outline" in classify(item).parameters["mass"].note

@@ -171,6 +171,7 @@ def test_without_samples_curves_are_those_of_corners(tmp_path: Path) -> None:
     assert first.median == pytest.approx(onset(record, "10"), rel=1e-3)
     text = page(settings)
     assert "fails from about" in text
+    assert "From what shaking of its floor on:" in text
     assert "about once in" in text
 
 

@@ -81,10 +81,13 @@ def test_the_median_of_a_gallery_knows_what_never_fails() -> None:
     members = [of(replace(CURVE, median=m * G, bound=b)) for m, b in ((0.2, ""), (2.1, "above"), (2.1, "above"))]
     view = shaking_view(members)  # type: ignore[arg-type]
     assert view is not None
-    assert view.sentence.startswith("Half of the 3 objects that stand free stand at 2.1\u202fg of peak acceleration")
+    said = "Half of the 3 objects that stand free stand at 2.1\u202fg of peak acceleration of their floor at least."
+    assert view.sentence == said
     two = shaking_view(members[:1])  # type: ignore[arg-type]
     assert two is not None
-    assert two.sentence.startswith("The one object that stands free fails from about 0.2\u202fg of peak")
+    assert two.sentence.startswith(
+        "The one object that stands free fails from about 0.2\u202fg of peak acceleration of its floor"
+    )
     assert shaking_view([]) is None
 
 

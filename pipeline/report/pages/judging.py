@@ -286,8 +286,9 @@ def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
         # Each of these bounds is below its own median, and so is their median below that of the medians.
         middle = median(0.0 if f.bound in (BELOW, FLAT) else f.median for f in free)
         phrase = ngettext(
-            "The one object that stands free stands at %(at)s of peak acceleration at least.",
-            "Half of the %(count)s objects that stand free stand at %(at)s of peak acceleration at least.",
+            "The one object that stands free stands at %(at)s of peak acceleration of its floor at least.",
+            "Half of the %(count)s objects that stand free stand at %(at)s of peak acceleration of their floor "
+            "at least.",
             len(free),
         )
     classes = {a.scene.object_class for a in members if a.scene.support is Support.FREESTANDING}
