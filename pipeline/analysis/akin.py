@@ -13,7 +13,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
-from pipeline.analysis.rule_table import IDEOGRAPH, WORD, RuleTable, fold
+from pipeline.analysis.rule_table import IDEOGRAPH, UNSPACED, WORD, RuleTable, fold
 from pipeline.tables import table
 from pipeline.tables.rows import Text, checked, once
 
@@ -70,6 +70,8 @@ def known(of: RuleTable, word: str) -> tuple[tuple[tuple[str, ...], str], ...]:
         # Chinese and Japanese put what a thing is last: of its known endings the longest says it.
         ends += [((), head) for head in heads_of(word) if head in of.by_word]
         ends.sort(key=lambda pair: -len(pair[1].removeprefix("*")))
+    if UNSPACED.search(word):
+        ends += [((), word[:end]) for end in range(len(word) - 1, 1, -1) if word[:end] in of.by_word]
     return (*sorted(whole, key=lambda pair: -len(pair[0])), *ends)
 
 

@@ -236,8 +236,9 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         if placed is not None:
             found["gallery"] = placed
             told.doubts.append(f"column {placed.name!r} is taken to tell where objects are, by what it holds")
-    if "title" not in told.choices and not any(key in found and found[key].filled for key in {*_NAMING} - {*by_value}):
-        saying = naming_among(columns, found.values())
+    said = {key for key in {*_NAMING} - {*by_value} if key in found and found[key].filled}
+    if "title" not in told.choices and said <= {"medium"}:
+        saying = naming_among(columns, found.values(), words_enough=not said)
         if saying is not None:
             found["title"] = saying
             told.doubts.append(f"no column is called for names or titles: {saying.name!r} is taken, by what it holds")

@@ -89,11 +89,18 @@ def names_thing(text: str) -> bool:
         A title or the opening of a description.
     """
     words, endings = _things()
+    gloss = _GLOSS.fullmatch(text)
+    if gloss:
+        return names_thing(gloss[1]) or names_thing(gloss[2])
     said = _COUNTED.sub("", words_of(text).strip(), count=1)
     head = _WORD.findall(folded(_HEAD.split(said, maxsplit=1)[0]))
     if not 0 < len(head) <= _SHORT:
         return False
     return not words.isdisjoint((head[0], head[-1], " ".join(head))) or head[-1].endswith(endings)
+
+
+_GLOSS = re.compile(r"([^()]+)\(([^()]+)\)\s*")
+"""A name with what it means: "Kete (basket)"."""
 
 
 @cache

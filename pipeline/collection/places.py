@@ -14,8 +14,8 @@ LONGEST = 300
 """Characters beyond which a text names no place that could be parted."""
 
 _ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
-_SIGN = r"(?:[a-z]?\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
-"""What tells one case from the next: 3, 12b, A, IV, FS."""
+_SIGN = r"(?:[a-z]{0,3}\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
+"""What tells one case from the next: 3, 12b, A, IV, FS, MW4."""
 
 _NOTHING_BEHIND = re.compile(r"\s*[,;/>|]\s*[-–—.]*\s*$")
 """What stands for a case that a place has not: "Gartensaal / –"."""
@@ -37,7 +37,7 @@ _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
 ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
     r"|salon|sala|salone|galleria|galería|galeria|zaal|\w*sal|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
-    r"|ruang|phòng|القاعة|قاعة|تالار|אולם|\w*展示室[a-z\d]{0,3})(?!\w)",
+    r"|ruang|gedung|phòng|nhà|salla|დარბაზი|սրահ|ցուցասրահ|ห้อง\S*|القاعة|قاعة|غرفة|تالار|אולם|חדר|\w*展示室[a-z\d]{0,3})(?!\w)",
     re.IGNORECASE,
 )
 """A room that is named without a number or a mark behind it: "Fossil room Case 2"."""
@@ -45,6 +45,10 @@ _NUMBERED_ROOM = re.compile(
     rf"(.*?(?:{ROOM.pattern}\s?(?:no\.?|nr\.?|#|№)?\s?{_SIGN}|\S[室厅廳館실관홀]))\s+(\S.*)", re.IGNORECASE
 )
 """One with its number and more words behind: "Gallery 3 on plinth"."""
+
+
+_NAMED_ROOM = re.compile(r"((?:[A-Z\u00c0-\u00de][\w'\u2019-]+\s+){2})([a-z].*)", re.DOTALL)
+"""Two words with capitals ahead of one without: "Mana Whenua plinth 2", but no "Large plinth 2"."""
 
 
 class NamedPlace(NamedTuple):
@@ -96,6 +100,9 @@ def parted(text: str) -> NamedPlace:
         found = inside.search(text) if len(spans) == 1 else None
         if found and ROOM.search(text[: found.start()]):
             return NamedPlace(text[: found.start()].rstrip(), text[found.start() :])
+        named = _NAMED_ROOM.fullmatch(text) if len(spans) == 1 else None
+        if named and numbered.match(named[2]):
+            return NamedPlace(named[1].rstrip(), named[2])
         return NamedPlace(text, text if len(spans) > 1 or numbered.match(text) else "")
     pieces = [text[start:end] for start, end in spans]
     held = next((at for at, one in enumerate(pieces) if at and (_tells(one) or _OF_WALLS.fullmatch(one))), 0)

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator
 
 from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support
 from pipeline.tables import table
-from pipeline.tables.rows import BUT_NOT, SOME_WORDS, Entries, TableRow, Text, checked
+from pipeline.tables.rows import BUT_NOT, SOME_WORDS, UNSEEN, Entries, TableRow, Text, checked
 
 CASES = (
     *("case", "cases", "Schrank", "kast", "Vit", "Vitr", "ケース", "armoire", "armadio", "armario", "armário", "dolap"),
@@ -55,7 +55,7 @@ _REACHES = re.compile(r"to\b", re.IGNORECASE)
 _PATTERNED = frozenset("~+/")
 """Signs of entries that are more than words and gaps between them."""
 
-_JOINED = re.compile("[\u2e80-\u30ff\u3400-\u9fff\uac00-\ud7af]")
+_JOINED = re.compile("[\u0e00-\u0eff\u2e80-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
 
 def _nothing(cell: object) -> object:
@@ -201,7 +201,7 @@ def told_by(text: str) -> HeldAs:
     HeldAs
         Of each thing that which the first row of the table says whose words are there.
     """
-    text = _WALL_CASE.sub("showcase", text)
+    text = _WALL_CASE.sub("showcase", UNSEEN.sub(" ", text))
     found = [told.row for told in _rows() if told.says(text)] if text.strip() else []
     if _NUMBERED.search(text) or any(row.furniture in _ENCLOSED for row in found):
         # "East, wall, case 3": what is in a case does not hang on the wall for a word alone.

@@ -7,6 +7,7 @@ from functools import cache
 from unicodedata import combining, normalize
 
 from pipeline.tables import table
+from pipeline.tables.rows import UNSEEN
 
 _WORD = re.compile(r"[^\W_]+")
 _PART = re.compile(r"[,;:.()\[\]|/]|\s[-\u2013\u2014]\s")
@@ -48,7 +49,7 @@ _OTHERWISE = frozenset({"baker", "leter", "vang"})
 
 def folded(text: str) -> str:
     """Return a text without capitals and accents."""
-    return "".join(one for one in normalize("NFKD", text) if not combining(one)).casefold()
+    return "".join(one for one in normalize("NFKD", UNSEEN.sub("", text)) if not combining(one)).casefold()
 
 
 @cache

@@ -43,6 +43,9 @@ BUT_NOT = re.compile(rf"(?:\b(?:{_DENIED})\s+(?:\w+\s+){{0,3}}|\bun|[无無未�
 SOME_WORDS = r"(?:\w+\W+){0,3}"
 """What * stands for in the words of a table: up to three words."""
 
+UNSEEN = re.compile("[\u00ad\u200b-\u200f\u202a-\u202e\u2060-\u2069\ufeff]")
+"""Signs that show nothing: soft hyphens, marks of direction, what parts the letters of a Persian word."""
+
 UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
 _SHOWN = 80
@@ -217,7 +220,10 @@ def any_of(words: Iterable[str]) -> re.Pattern[str]:
     within = [pattern for word, pattern in escaped if UNPARTED.match(word)]
     parted = [pattern for word, pattern in escaped if not UNPARTED.match(word)]
     # One boundary for all: to look for it before each word took four times as long.
-    return re.compile("|".join([*within, *([rf"\b(?:{'|'.join(parted)})\b"] if parted else [])]), re.IGNORECASE)
+    # A Thai word may end with a sign that is no letter, behind which \b sees no end.
+    return re.compile(
+        "|".join([*within, *([rf"(?<!\w)(?:{'|'.join(parted)})(?!\w)"] if parted else [])]), re.IGNORECASE
+    )
 
 
 class NamedRange(RangeRow):

@@ -11,6 +11,7 @@ from html import unescape
 from typing import Any
 
 from pipeline.collection.dimensions.lexicon import meanings, unit_words
+from pipeline.tables.rows import UNSEEN
 
 LONGEST = 20_000
 """Characters of a cell that are looked at: thirty measurements with all that a catalogue says of each."""
@@ -60,7 +61,7 @@ def plain_text(text: str) -> str:
     """
     if len(text) > LONGEST:
         return text
-    text = _ENTITY.sub(_unescaped, text)
+    text = UNSEEN.sub("", _ENTITY.sub(_unescaped, text))
     if _SLASHED.fullmatch(text) and not _DATED.fullmatch(text):
         return " x ".join(part for part in map(str.strip, text.split("/")) if part[0].isdigit())
     if not _OPENS.match(text):

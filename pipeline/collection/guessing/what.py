@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
+from pipeline.collection.guessing.by_values import things
 from pipeline.collection.guessing.columns import Column, untaken
 from pipeline.collection.guessing.names import ARTIST, CALLED, DESCRIPTION, TEXTS, named, path_of, plain
 from pipeline.collection.guessing.within import placed
@@ -154,7 +155,7 @@ def naming_the_rest(found: Mapping[str, Column], chosen: Mapping[str, str]) -> b
     return _names_things(rest[:_SOME])
 
 
-def naming_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
+def naming_among(columns: Sequence[Column], used: Iterable[Column], *, words_enough: bool) -> Column | None:
     """Return the column of words that are different for nearly all objects, whatever it is called: their names.
 
     Parameters
@@ -163,6 +164,8 @@ def naming_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | 
         Of the source.
     used : iterable of Column
         Those that are fields already.
+    words_enough : bool
+        Whether any words will do; else some of them must name things, for materials tell what things are too.
     """
     able = [
         one
@@ -172,8 +175,13 @@ def naming_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | 
         and not (one.measured or one.of_machine or one.numbering or one.pictured > _MOST or one.dimensional > _MOST)
         and placed(one) < _MOST
         and sum(len(text.split()) > 1 for text in one.filled) >= _MOST * len(one.filled)
+        and (words_enough or things(one) >= _SOME_NAME)
     ]
     return max(able, key=lambda one: len(one.distinct), default=None)
+
+
+_SOME_NAME = 0.3
+"""Share of the texts of a column that must name things where it is not called for names (judgement)."""
 
 
 _DIFFERENT = 0.8
