@@ -13,9 +13,9 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
-from pipeline.analysis.rule_table import IDEOGRAPH, UNSPACED, WORD, RuleTable, fold
+from pipeline.analysis.rule_table import IDEOGRAPH, WORD, RuleTable, fold
 from pipeline.tables import table
-from pipeline.tables.rows import Text, checked, once
+from pipeline.tables.rows import UNSPACED, Text, checked, once
 
 _ENDINGS = (
     *(("chi", "co"), ("ghi", "go"), ("i", "o"), ("i", "e"), ("e", "a")),
@@ -33,7 +33,7 @@ _STEM = 2
 """Letters that must precede an ending such as *statuette."""
 _PLURAL = 6
 """Letters from which an e at the end may be that of a plural (Handschuhe): plane is no plan, and cane no can."""
-_NO_PLURALS = frozenset({"hermes", "fates", "cannes"})
+_NO_PLURALS = frozenset({"hermes", "fates", "cannes", "raden"})
 """Names, folded, that look like plurals of the table's words: the god is no herm."""
 _RELATED = 4
 """Letters from which a word may be a plural or a small kind of another."""

@@ -154,9 +154,10 @@ _SMALL_WORDS = (
     "av|af|med|till|til|fran|fra|for|och|og|som",
     "с|из|для|на|в|от",
     "με|απο|σε|για|του|της|και",
+    "dengan|dari|untuk|dan|pada|me|prej|nga",
     "من|مع|علی|فی|از|با|در|بر|و",
 )
-"""Words of thirteen languages, folded, that end the name of a thing: prepositions, joined articles, genitives."""
+"""Words of fifteen languages, folded, that end the name of a thing: prepositions, joined articles, genitives."""
 BREAK = re.compile(rf"[,:;|()\[\]{{}}/\"]|\s(?:{'|'.join(_SMALL_WORDS)}|銘)\s|\s[dl]['\u2019]")
 """Where the name of a thing ends and its description begins."""
 _SUPPORT = re.compile(
@@ -177,8 +178,6 @@ _COUNTED = re.compile(
 """How many there are, behind the name of a thing in signs: 石狮一对."""
 HEAD_FIRST = re.compile(r"[\u0590-\u06ff\u0e00-\u0eff]")
 """Letters of languages that name a thing before what it is of, with no word between: Arabic, Persian, Hebrew, Thai."""
-UNSPACED = re.compile(r"[\u0e00-\u0eff]")
-"""Letters of such languages that put no spaces between words either: what a thing is called begins with its name."""
 IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 """Letters of scripts that put no spaces between words: there one letter may precede an ending."""
 

@@ -288,14 +288,23 @@ def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable, *, alone
     """
     if not text:
         return None
+    large: RuleMatch | None = None
     for word in _candidates(text[:READ], of):
         rules_of = of.by_word.get(word) or of.by_ending.get(word[1:], ())
         for rule in rules_of:
             if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
-                return RuleMatch(rule, f"named {word!r}", word)
+                found = RuleMatch(rule, f"named {word!r}", word)
+                if rule.name not in _LARGE_PIECES:
+                    return found
+                large = large or found
+                break
         if alone:
             return RuleMatch(rules_of[-1], f"named {word!r}", word, _HALF_KNOWN)
-    return None
+    return large
+
+
+_LARGE_PIECES = ("fragment-slab", "fragment-large")
+"""Rules of large pieces of anything: what else a name says of them goes first."""
 
 
 def _is_bare(item: Item) -> bool:

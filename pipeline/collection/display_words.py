@@ -20,7 +20,7 @@ _CODE = re.compile(r"(?:no|nr|n°|nº)?[\w°º]{0,2}\d*[\w]?|\d[\w]*", re.IGNORE
 _COMPOUND = re.compile(r"\w{3,}(?:depot|magazin|magasin|varasto|förråd)s?")
 _MOST_BESIDE = 3
 _MOST_FLAGS, _LONGEST_FLAG = 40, 80
-_CJK = re.compile("[\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7af]")
+_CJK = re.compile("[\u0e00-\u0eff\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7af]")
 _DENYING = "非未不沒没無无비미"
 """Signs that deny the word that follows: 비전시 is what 전시 is not."""
 

@@ -28,7 +28,7 @@ def written(part: DimensionPart, read: Dimensions) -> str:
     return characters if named else f"{characters} {part.unit}".strip()
 
 
-_TONNES = re.compile(r"(?<=\d)\s*(?:t|to|тонн[аы]?|т|톤|吨|噸|トン)\.?(?=\s*\Z)", re.IGNORECASE)
+_TONNES = re.compile(r"(?<=\d)\s*(?:t|to|(?<!\A1)(?<!\A1 )ton|тонн[аы]?|т|톤|吨|噸|トン)\.?(?=\s*\Z)", re.IGNORECASE)
 """How tonnes are written in a cell of weights."""
 
 

@@ -10,6 +10,7 @@ from pipeline.collection.dimensions.structured import words_of
 from pipeline.collection.mapping import ColumnMap
 from pipeline.tables import table
 from pipeline.tables.material_words import begins_with_material, folded, material_words
+from pipeline.tables.rows import UNSPACED
 
 _WORD = re.compile(r"[^\W\d_]+")
 _DATED = re.compile(r"\W*(?:(?:c|ca|circa|um|vers|about|verso|hacia)\b\W*)?\d{1,4}\b[^,;:]{0,40}\Z", re.IGNORECASE)
@@ -93,10 +94,18 @@ def names_thing(text: str) -> bool:
     if gloss:
         return names_thing(gloss[1]) or names_thing(gloss[2])
     said = _COUNTED.sub("", words_of(text).strip(), count=1)
+    if UNSPACED.match(said):
+        return folded(said).startswith(_unspaced_things())
     head = _WORD.findall(folded(_HEAD.split(said, maxsplit=1)[0]))
     if not 0 < len(head) <= _SHORT:
         return False
     return not words.isdisjoint((head[0], head[-1], " ".join(head))) or head[-1].endswith(endings)
+
+
+@cache
+def _unspaced_things() -> tuple[str, ...]:
+    """Return the names of things in languages that put no spaces between words, and a thing's name first."""
+    return tuple(word for word in _things()[0] if UNSPACED.match(word))
 
 
 _GLOSS = re.compile(r"([^()]+)\(([^()]+)\)\s*")

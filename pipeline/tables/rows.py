@@ -48,6 +48,9 @@ UNSEEN = re.compile("[\u00ad\u200b-\u200f\u202a-\u202e\u2060-\u2069\ufeff]")
 
 UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
+UNSPACED = re.compile("[\u0e00-\u0eff]")
+"""Letters of Thai and Lao, which put no spaces between words either, and the name of a thing before what it is of."""
+
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
 

@@ -117,7 +117,18 @@ def _decimal_commas() -> str:
     )
 
 
+def _facts(number: Callable[[int, int], str]) -> str:
+    lines = [
+        f"{number(at, place)};{key};{one};2024-01-01"
+        for at, row in enumerate(FLAT, start=7001)
+        for place, (key, one) in enumerate(row.items())
+    ]
+    return "\n".join(("record;field;content;changed", *lines))
+
+
 TEXTS = {
+    "facts.csv": lambda: _facts(lambda at, _: str(at)),
+    "facts_below.csv": lambda: _facts(lambda at, place: "" if place else str(at)),
     "list.yaml": _yaml,
     "documents.yml": _documents,
     "page.html": _page,
@@ -213,6 +224,35 @@ def test_cells_over_several_rows_of_a_page_hold_for_each_of_them(tmp_path: Path)
         "A 2": ("Hall", pytest.approx(0.92), pytest.approx(0.5)),
         "A 3": ("Store", pytest.approx(0.615), pytest.approx(0.4)),
     }
+
+
+def test_facts_that_name_no_field_are_refused_and_those_told_twice_are_joined(tmp_path: Path) -> None:
+    facts = [
+        *("1,Object name,Vase", "1,Material,glass", "1,Material,bronze", "1,Room,Hall", "1,Height,40 cm", "1,,lost"),
+        *("2,Object name,Bust", "2,Material,marble", "2,Room,Hall", "2,Height,60 cm"),
+        *("3,Object name,Chest", "3,Material,oak", "3,Room,Hall", "3,Height,70 cm"),
+        *("4,Object name,Urn", "4,Material,marble", "4,Room,Hall", "4,Height,80 cm"),
+    ]
+    path = tmp_path / "facts.csv"
+    path.write_text("\n".join(("number,attribute,value", *facts)), encoding="utf-8")
+    reading = proposed(str(path)).reading
+    assert {one.object_number: (one.object_name, one.medium, one.height_m) for one in reading.items} == {
+        "1": ("Vase", "glass; bronze", 0.4),
+        "2": ("Bust", "marble", 0.6),
+        "3": ("Chest", "oak", 0.7),
+        "4": ("Urn", "marble", 0.8),
+    }
+    assert [one.line for one in reading.rejected] == [7]
+    assert "a fact without the name of its field, or of no object" in reading.rejected[0].message
+
+
+def test_a_row_for_each_measurement_is_no_row_for_each_fact(tmp_path: Path) -> None:
+    path = tmp_path / "long.csv"
+    lines = [
+        f"{at},{kind},{size},cm" for at in (1, 2, 3) for kind, size in (("Height", 40), ("Width", 30), ("Depth", 20))
+    ]
+    path.write_text("\n".join(("number,dimension,value,unit", *lines)), encoding="utf-8")
+    assert [one.height_m for one in proposed(str(path)).reading.items] == [0.4] * 3
 
 
 def test_ranks_of_measurements_are_no_sizes(tmp_path: Path) -> None:

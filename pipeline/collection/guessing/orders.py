@@ -150,6 +150,12 @@ def language_of(columns: Sequence[Column]) -> tuple[str, str]:
     read = [labels(plain_text(text)) for column in columns for text in column.distinct[:_SOME]]
     read = [(those, able) for those, able in read if those]
     sure = Counter(able[0] for those, able in read if len(able) == 1 and len(those) > 1)
+    headed = _headed_in(columns, [those for those, _ in read])
+    if headed and not sure.keys() - {headed}:
+        return headed, (
+            f"short labels of sizes are read as the language {headed} has them, in which the column is called "
+            f"{columns[0].name!r}; take language out of [dimensions] where that is wrong"
+        )
     if not sure:
         return "", ""
     name, often = sure.most_common(1)[0]
@@ -161,6 +167,23 @@ def language_of(columns: Sequence[Column]) -> tuple[str, str]:
         f"short labels of sizes are read as the language {name} has them, which those of {often} of {len(read)} texts "
         "can only be; take language out of [dimensions] where that is wrong"
     )
+
+
+def _headed_in(columns: Sequence[Column], read: Sequence[frozenset[str]]) -> str:
+    """Return the language of a column's own name, where height is no H in it and it knows nearly all of the labels."""
+    for name, language in languages().items():
+        called = all(_words_of(column).intersection(language.words) for column in columns)
+        if not called or language.meaning("H") == "height":
+            continue
+        known = sum(all(map(language.meaning, those)) for those in read)
+        if len(read) >= FEWEST and known >= ALIKE * len(read):
+            return name
+    return ""
+
+
+def _words_of(column: Column) -> set[str]:
+    plain = column.name.casefold()
+    return {plain, *re.findall(r"[^\W\d_]+", plain)}
 
 
 @dataclass(frozen=True, slots=True)

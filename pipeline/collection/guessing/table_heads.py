@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, cast
 
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.guessing.facts import facts_of
 from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.guessing.questions import Question
 from pipeline.collection.guessing.text_files import LOOKED_AT, encoding_of, is_sideways, table_head
@@ -74,6 +75,14 @@ def set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told
     if many > 1:
         source["header_rows"] = many
         told.sure.append(f"{many} rows name the columns together")
+    facts = facts_of([cells for _, cells in rows], next((at for at, (n, _) in enumerate(rows) if n == row), 0))
+    if many == 1 and facts is not None:
+        source["facts"] = facts.model_dump()
+        told.sure.append(
+            f"each fact of an object has a row of its own: {facts.field!r} says which, {facts.value!r} what it is; "
+            f"they are gathered by {facts.object!r}"
+        )
+        return
     if head.known < 2 and "header_row" not in told.choices:
         told.doubts.append(
             f"row {row} is taken for the names of the columns, of which few are known here; --choose header_row=NUMBER "

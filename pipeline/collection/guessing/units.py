@@ -9,6 +9,7 @@ from statistics import median
 
 from pipeline.collection.dimensions.lexicon import units
 from pipeline.collection.sources.measurement_terms import unit_of
+from pipeline.tables.rows import UNSEEN
 
 _OPEN, _CLOSE = "([（［", ")]）］"
 _SIGNS = r"\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af"
@@ -76,6 +77,7 @@ def told_unit(name: str) -> tuple[str, str | None]:
     (str, str or None)
         None where it names none, or nothing but that.
     """
+    name = UNSEEN.sub("", name)
     found = [one for one in _NAMED.finditer(name) if _is_unit(name, one)] if len(name) <= LONGEST else []
     for able in _PLACES:
         for one in found:

@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Request, SourceSettings
+from pipeline.collection.sources.facts import FactRows, spread
 from pipeline.collection.sources.heads import joined_heads, numbered_heads
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.sideways import turned
@@ -328,6 +329,10 @@ class HeadedSettings(SourceSettings):
         default=False,
         description="Objects stand side by side: each column is one, and the first cell of each row names a field.",
     )
+    facts: FactRows | None = Field(
+        default=None,
+        description="Where each fact of an object has a row: which columns tell the object, the field, the value.",
+    )
 
     @property
     def head(self) -> tuple[int, int]:
@@ -335,11 +340,12 @@ class HeadedSettings(SourceSettings):
         return (1 if self.header_row is None else self.header_row), self.header_rows or 1
 
     def straight(self, rows: Iterator[Row], file: str) -> Iterator[Row]:
-        """Return the rows of objects, turned where they stand side by side.
+        """Return the rows of objects, turned where they stand side by side, gathered where each fact has a row.
 
         rows : the header first;  file : the source's name in messages
         """
-        return turned(rows, file) if self.sideways else rows
+        rows = turned(rows, file) if self.sideways else rows
+        return rows if self.facts is None else spread(rows, self.facts, file)
 
 
 class CsvSettings(HeadedSettings):
