@@ -150,8 +150,28 @@ class Readings:
         return not (self.outright or self.name or self.classification or self.medium or self.title)
 
 
+_TECHNIQUE = re.compile(r"(.{3,120}?)[,;]\s+([^,;]{3,60}(?:,\s[^,;]{3,40})?)\s*\.?\s*", re.DOTALL)
+
+
+def _with_technique(item: Item) -> Item:
+    """Return a record without a medium whose name or title ends with that of a picture: "Madonna, oil on panel"."""
+    if item.medium or item.material:
+        return item
+    for field in ("object_name", "title"):
+        found = _TECHNIQUE.fullmatch(getattr(item, field)[:READ])
+        if found and any(rule.object_class in PICTURES for rule in _made(rules(), stuff("", found[2]))):
+            return replace(item, medium=found[2])
+    return item
+
+
 def as_classed(item: Item) -> Item:
-    """Return a record whose object name is only a kind of things, such as ceramics, with that as its classification."""
+    """Return a record as it is classed: with the technique that its name or title ends with, where it has no medium.
+
+    Where its object name is only a kind of things, such as ceramics, that is its classification.
+
+    item : any
+    """
+    item = _with_technique(item)
     if item.classification or not item.title or fold(item.object_name).strip() not in KINDS_ONLY:
         return item
     return replace(item, classification=item.object_name, object_name="")
@@ -193,6 +213,10 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
         name = title
     # What is painted, drawn or printed is flat, whatever its title says that it shows, but for its own format.
     flat = made is not None and made.rule.object_class in PICTURES
+    named_so = name is not None and name.rule.object_class in (*_FIGURES, "bust")
+    if flat and named_so and fold(item.object_name).strip() not in SCULPTURES:
+        # A Madonna of oil on panel is a picture, in whatever field she is named.
+        name = None
     speaks = title if not flat or (title is not None and title.rule.name in FORMATS) else None
     if name is not None and name.rule.object_class in _THINGS and _OF_TECHNIQUE.search(fold(item.classification)):
         classed = None
@@ -249,7 +273,8 @@ def _narrows(title: RuleMatch, name: RuleMatch, item: Item) -> bool:
     carved = fold(item.object_name).strip() in SCULPTURES and (
         title.rule.object_class in _CARVED or title.rule.name == LIGHTS[1] or bool(_MASK.match(title.word))
     )
-    return hangs or longer or carved or (bool(thing) and kind.rpartition(" ")[2] in FRAGMENTS)
+    small = title.rule.name not in _LARGE_PIECES and kind.rpartition(" ")[2] in FRAGMENTS
+    return hangs or longer or carved or (bool(thing) and small)
 
 
 def _wordless(item: Item, kinds: frozenset[str], of: RuleTable) -> tuple[RuleMatch | None, RuleMatch | None]:

@@ -175,7 +175,7 @@ def as_told(item: Item, row: ObjectClass) -> Item:
     if row.support is Support.SUSPENDED and _by_chain_alone(item):
         return replace(item, support=Support.SUSPENDED, hanging=None)
     if row.support is Support.FREESTANDING and WHEN_HELD not in row.models and item.support is Support.HUNG:
-        if item.hanging is Hanging.FIXED and _large(item, THICK, STANDS_FROM):
+        if item.hanging is Hanging.FIXED and (_large(item, THICK, STANDS_FROM) or longcase(item, row.name)):
             # A wardrobe or a longcase clock that is screwed to the wall stands there, and is held by it.
             return replace(item, support=Support.FASTENED, hanging=None)
         if row.name in _FURNITURE and item.hanging is None and _large(item, DEEP, STANDS_FROM) and _named_wall(item):

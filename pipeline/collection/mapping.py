@@ -330,6 +330,9 @@ def mapping_schema() -> dict[str, Any]:
     ]
     # Of another package's kind of source nothing but its name is known here.
     own = [source.Settings.model_json_schema() for source in SOURCES.own]
+    for one in own:
+        # References are to what the whole schema defines.
+        schema["$defs"].update(one.pop("$defs", {}))
     others = {"not": {"enum": [source.name for source in SOURCES.own]}, "type": "string"}
     schema["$defs"]["SourceSettings"] = {
         "description": "How the museum's file or database is read.",

@@ -37,6 +37,15 @@ _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
 ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
     r"|salon|sala|salone|galleria|galería|galeria|zaal|\w*sal|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
+    r"|kitchen|bedroom|parlou?r|nursery|study|library|dining room|drawing room|barn|stable|cellar|attic|chapel|sacristy"
+    r"|nave|choir|stairs|staircase|corridor|courtyard|garden|küche|stube|\w+stube|\w*kammer|scheune|stall|keller|diele"
+    r"|flur|\w*zimmer|\w*kapelle|sakristei|langhaus|chor|treppenhaus|\w*hof|garten|dachboden|tenne|cuisine|chambre"
+    r"|grange|étable|cave|grenier|bibliothèque|chapelle|sacristie|chœur|escalier|couloir|cour|jardin|cucina|camera"
+    r"|stalla|fienile|cantina|soffitta|salotto|biblioteca|cappella|sacrestia|navata|presbiterio|scala|cortile"
+    r"|giardino|cocina|dormitorio|granero|establo|bodega|comedor|capilla|sacristía|nave|escalera|pasillo|patio|jardín"
+    r"|cozinha|quarto|celeiro|adega|capela|sacristia|escada|pátio|jardim|keuken|slaapkamer|schuur|kelder|zolder|kapel"
+    r"|kuchnia|izba|stodoła|stajnia|piwnica|kaplica|kuchyně|světnice|stodola|chlév|sklep|kaple|konyha|istálló|pince"
+    r"|κουζίνα|παρεκκλήσι|αυλή|κήπος|κελάρι|mutfak|ahır|kiler|avlu|bahçe|kök|stuga|lada|köket|stue|kjøkken|låve|tupa"
     r"|ruang|gedung|phòng|nhà|salla|დარბაზი|սրահ|ցուցասրահ|ห้อง\S*|القاعة|قاعة|غرفة|تالار|אולם|חדר|\w*展示室[a-z\d]{0,3})(?!\w)",
     re.IGNORECASE,
 )

@@ -59,7 +59,11 @@ def by_values(
         if able is not None:
             out["object_name"] = able, "most of its cells name things"
     if not ("medium" in found and found["medium"].filled) and "medium" not in chosen:
-        able = _likeliest(columns, [*found.values(), *(one for one, _ in out.values())], materials)
+        used = [*found.values(), *(one for one, _ in out.values())]
+        if not naming and not out:
+            # What describes things where nothing else names them says first what they are.
+            used += [one for one in columns if called(one.name, DESCRIPTION)]
+        able = _likeliest(columns, used, materials)
         if able is not None:
             out["medium"] = able, "most of its cells name materials"
     return out

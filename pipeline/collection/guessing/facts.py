@@ -58,7 +58,8 @@ def facts_of(rows: Sequence[Sequence[str]], head: int) -> FactRows | None:
 def _names_fields(texts: Sequence[str]) -> bool:
     """Whether texts are names of fields that come again, some of them of more than sizes."""
     names = {*texts} - {""}
-    if texts.count("") > (1.0 - _ONCE) * len(texts) or len(names) < _FEWEST_FIELDS or len(names) > _MOST_OF * len(texts) + 1:
+    unnamed = texts.count("") > (1.0 - _ONCE) * len(texts)
+    if unnamed or not _FEWEST_FIELDS <= len(names) <= _MOST_OF * len(texts) + 1:
         return False
     meant = [named(unit_in(name)[0]) for name in names if len(name) <= _LONGEST]
     known = {one.field for one in meant if one is not None}

@@ -13,6 +13,13 @@ FORMER = frozenset(
 )
 """Words that say that something else is meant than the object's own number and place now."""
 
+OWNERS = frozenset({
+    "lender", "owner", "donor", "leihgeber", "besitzer", "eigentumer", "proprietaire", "preteur", "proprietario",
+    "propietario", "prestatore", "prestador", "eigenaar", "bruikleengever", "vendor", "dealer", "institution", "museum",
+    "musee", "museo", "museu", "sammlung", "collection", "collezione", "coleccion",
+})  # fmt: skip
+"""Words, folded, of whose a thing is: such a column names no things."""
+
 ABOUT = frozenset(
     {"measurement", "measurements", "measure", "dimension", "dimensions", "size", "sizes", "maß", "misura"}
 )

@@ -150,19 +150,17 @@ def language_of(columns: Sequence[Column]) -> tuple[str, str]:
     read = [labels(plain_text(text)) for column in columns for text in column.distinct[:_SOME]]
     read = [(those, able) for those, able in read if those]
     sure = Counter(able[0] for those, able in read if len(able) == 1 and len(those) > 1)
-    headed = _headed_in(columns, [those for those, _ in read])
-    if headed and not sure.keys() - {headed}:
+    name, often = sure.most_common(1)[0] if sure else ("en", 0)
+    meaning = languages()[name].meaning
+    known = sum(all(map(meaning, those)) for those, _ in read)
+    if name == "en" or often < max(FEWEST, MOST * sum(sure.values())) or known < ALIKE * len(read):
+        headed = _headed_in(columns, [those for those, _ in read])
+        if not headed or sure.keys() - {headed}:
+            return "", ""
         return headed, (
             f"short labels of sizes are read as the language {headed} has them, in which the column is called "
             f"{columns[0].name!r}; take language out of [dimensions] where that is wrong"
         )
-    if not sure:
-        return "", ""
-    name, often = sure.most_common(1)[0]
-    meaning = languages()[name].meaning
-    known = sum(all(map(meaning, those)) for those, _ in read)
-    if name == "en" or often < max(FEWEST, MOST * sum(sure.values())) or known < ALIKE * len(read):
-        return "", ""
     return name, (
         f"short labels of sizes are read as the language {name} has them, which those of {often} of {len(read)} texts "
         "can only be; take language out of [dimensions] where that is wrong"

@@ -8,6 +8,7 @@ from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.by_values import things
 from pipeline.collection.guessing.columns import Column, untaken
+from pipeline.collection.guessing.name_words import OWNERS
 from pipeline.collection.guessing.names import ARTIST, CALLED, DESCRIPTION, TEXTS, named, path_of, plain
 from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
@@ -171,6 +172,7 @@ def naming_among(columns: Sequence[Column], used: Iterable[Column], *, words_eno
         one
         for one in untaken(columns, used)
         if named(one.name) is None
+        and OWNERS.isdisjoint(plain(one.name).split())
         and len(one.distinct) >= _DIFFERENT * len(one.values)
         and not (one.measured or one.of_machine or one.numbering or one.pictured > _MOST or one.dimensional > _MOST)
         and placed(one) < _MOST

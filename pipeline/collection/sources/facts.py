@@ -27,7 +27,7 @@ class FactRows(BaseModel):
 
 
 @dataclass
-class _Gathered:
+class _FactsOfOne:
     line: int
     cells: dict[str, str]
     faults: dict[str, tuple[str, str]] = field(default_factory=dict)
@@ -69,7 +69,7 @@ def spread(rows: Iterator[Row], facts: FactRows, file: str) -> Iterator[Row]:
             )
     of, called, said = (names.index(name) for name in (facts.object, facts.field, facts.value))
     fields: dict[str, None] = {facts.object: None}
-    objects: dict[str, _Gathered] = {}
+    objects: dict[str, _FactsOfOne] = {}
     broken: list[Row] = []
     above = ""
     for row in rows:
@@ -92,7 +92,7 @@ def spread(rows: Iterator[Row], facts: FactRows, file: str) -> Iterator[Row]:
                 f"{file}: more than {MOST_FIELDS:,} names of fields in {facts.field!r}; leave [source.facts] out where "
                 "each row is an object"
             )
-        found = objects.setdefault(number, _Gathered(row.line, {facts.object: number}))
+        found = objects.setdefault(number, _FactsOfOne(row.line, {facts.object: number}))
         if said in row.faults:
             found.faults[fact] = row.faults[said]
         elif value := row.cells[said].strip():
