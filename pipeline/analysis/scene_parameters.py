@@ -16,14 +16,14 @@ from pipeline.analysis.told import line_of
 from pipeline.analysis.usual import base_of, clearance_of, friction_of, own_damping, shelved, wall_damping_of
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
-from pipeline.records import Estimate, Item, Origin, Support
+from pipeline.records import Estimate, Furniture, Item, Origin, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.body_rows import BodyRow
 
 FROM_ABOVE = "chandelier"
-"""Class of which the room is taken of whatever hangs from above: nothing stands as near as beside what stands."""
+"""Class of which the room is taken of what hangs from above in a room: nothing stands as near as beside what stands."""
 
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
@@ -263,14 +263,18 @@ class SceneParameters:
             friction = wheels.rolls
         elif friction is None:
             material = base_of(self.values, item) or self.material.friction_as
-            stands_on = furniture_of(item, self.row.name, self.support, self.house).furniture
-            friction = friction_of(self.values, material, item.surface_material, stands_on)
+            friction = friction_of(self.values, material, item.surface_material, self._stands_on())
         self._keep("friction_static", friction)
+
+    def _stands_on(self) -> Furniture | None:
+        return furniture_of(self.item, self.row.name, self.support, self.house).furniture
 
     def _clearance(self) -> None:
         clearance = self._known("clearance_m", "clearance", "m")
         if clearance is None and "clearance" not in self.found:
-            hangs = self.support is Support.SUSPENDED and not self.row.own
+            above = self.support is Support.SUSPENDED and not self.row.own
+            # Within a case the glass is as near to it as to what stands there.
+            hangs = above and self._stands_on() is not Furniture.SHOWCASE
             clearance = shelved(self.item, self.row) or clearance_of(
                 self.values, FROM_ABOVE if hangs else self.row.name
             )

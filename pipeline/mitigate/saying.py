@@ -6,7 +6,7 @@ from pipeline.analysis.furniture import row_of_loads
 from pipeline.analysis.told import held_as_displayed
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.base import knows_section
-from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE, hung_by
+from pipeline.mitigate.measures.clearance import FOURFOLD, FOURFOLD_IN_CASE, TWICE, TWICE_IN_CASE, hung_by
 from pipeline.mitigate.measures.fixings import FINISHED, finishes, on_glass
 from pipeline.mitigate.proposals import STANDING, Candidate, Deficiency, Numbers
 from pipeline.mitigate.trials import TrialRunner
@@ -109,6 +109,7 @@ BY_HAND = "Try by hand whether it holds: where it gives, use more."
 
 SAID_AS_IT_IS = (
     TOO_MUCH, PERHAPS_TOO_MUCH, STANDS_ON, ON_GLASS, LID, UNSEEN, CREEPS, IN_WARMTH, BY_HAND, TWICE, FOURFOLD,
+    TWICE_IN_CASE, FOURFOLD_IN_CASE,
 )  # fmt: skip
 """Of what follows the ones that a page says as they are."""
 

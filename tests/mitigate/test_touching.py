@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.response import respond
-from pipeline.mitigate.measures.clearance import FOURFOLD, TWICE
+from pipeline.mitigate.measures.clearance import FOURFOLD, FOURFOLD_IN_CASE, TWICE
 from pipeline.mitigate.measures.fixings import FINISHED, HARMLESS
 from pipeline.mitigate.saying import ANCHORED, EACH_PIECE
 from pipeline.quantities import G
@@ -222,6 +222,11 @@ def test_what_swings_hangs_from_what_bears_twice_its_weight() -> None:
     # From half a metre and less it is tugged harder than any pendulum that is let go.
     short = solve(replace(lamp, suspension_length_m=0.4), demo_motion())
     assert (short.measure, FOURFOLD in short.sentence, TWICE in short.sentence) == ("clearance", True, False)
+    # Within a case there is no ceiling, and no more room than a case spares.
+    cased = solve(replace(lamp, suspension_length_m=0.4, displayed="sospeso in vetrina"), demo_motion())
+    assert cased.measure != "clearance"
+    assert any(text.startswith("Keep clear: it would need") for text in cased.rejected)
+    assert (FOURFOLD_IN_CASE in cased.sentence, "ceiling must" in cased.sentence) == (True, False)
     swing = advice.parameters["movement"]
     assert 3.0 - 2.0 * (1.0 - swing**2) ** 0.5 < 2.0
 

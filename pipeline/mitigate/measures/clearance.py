@@ -33,6 +33,13 @@ FOURFOLD = (
     "It hangs short, and is tugged when it swings: its hook, its chain or cable and their anchor in the ceiling must "
     "be rated for at least four times its weight."
 )
+TWICE_IN_CASE = (
+    "Its hook, its wire or cord and what holds them in the case must be rated for at least twice its weight."
+)
+FOURFOLD_IN_CASE = (
+    "It hangs short, and is tugged when it swings: its hook, its wire or cord and what holds them in the case must be "
+    "rated for at least four times its weight."
+)
 """One of them follows the sentence of a measure that lets what hangs from above swing.
 
 By integrations under the eleven motions of the demonstration: 1.2 to 1.3 times its weight on the mean and 1.7 at most,
@@ -48,7 +55,8 @@ def hung_by(scene: Scene) -> str:
     if scene.support is not Support.SUSPENDED:
         return ""
     length = scene.parameters.get("length")
-    return f" {TWICE if length is not None and length.low >= SHORT else FOURFOLD}"
+    twice, fourfold = (TWICE_IN_CASE, FOURFOLD_IN_CASE) if scene.furniture is Furniture.SHOWCASE else (TWICE, FOURFOLD)
+    return f" {twice if length is not None and length.low >= SHORT else fourfold}"
 
 
 class Clearance(Measure):
@@ -89,8 +97,7 @@ class Clearance(Measure):
         if most is None:
             return refused(N_("it does not move"))
         room = round_up(MARGIN * most)
-        hangs = one.scene.support in (Support.HUNG, Support.SUSPENDED)
-        allowed = self.row.limit_high * _times(one.scene) if hangs else self.row.limit
+        allowed = self.row.limit_high * _times(one.scene) if _hangs(one.scene) else self.row.limit
         if room > allowed:
             return refused(say.NEEDS_ROOM(room=room, allowed=allowed))
         numbers = {"clearance": (room, "m"), "movement": (most, "m")}
@@ -144,13 +151,19 @@ class Clearance(Measure):
         if not moving or not known_to_swing(one.scene):
             return N_("room helps only what moves, and what hangs only where it is recorded how")
         best = max(f.demand or 0.0 for f in moving)
-        hangs = one.scene.support in (Support.HUNG, Support.SUSPENDED)
-        allowed = self.row.limit_high * _times(one.scene) if hangs else min(self.row.limit, _spared(one.scene))
+        allowed = (
+            self.row.limit_high * _times(one.scene) if _hangs(one.scene) else min(self.row.limit, _spared(one.scene))
+        )
         rooms = tuple(dict.fromkeys(round_up(MARGIN * best * step) for step in STEPS))
         tried = tuple(room for room in rooms if 0.0 < room <= allowed)
         if tried:
             return tried
         return say.HAS_NO_ROOM(room=rooms[0], allowed=allowed)
+
+
+def _hangs(scene: Scene) -> bool:
+    """Whether an object hangs in a room: what hangs in a case has the room of a case."""
+    return scene.support in (Support.HUNG, Support.SUSPENDED) and scene.furniture is not Furniture.SHOWCASE
 
 
 def _times(scene: Scene) -> float:
