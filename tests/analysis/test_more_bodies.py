@@ -10,7 +10,9 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.analysis.told import line_of
 from pipeline.records import Furniture, Item, Mount, Support
+from pipeline.report.pages.scene_words import what_it_is
 from pipeline.tables.assumed import assumed
+from pipeline.tables.body_rows import body_told
 from pipeline.tables.limit_rows import limit
 
 TELESCOPE = Item("1", "G", "Refracting telescope on its tripod", object_name="telescope", medium="brass, glass",
@@ -121,3 +123,15 @@ def test_stones_are_stone(medium: str) -> None:
     found = assumed().material_in(medium)
     assert found is not None
     assert found.name == "stone"
+
+
+def test_what_is_tall_and_held_is_told_by_no_more_than_its_record_says() -> None:
+    """Nothing of a harpoon says a figure or a costume, and nothing of an aircraft's model architecture."""
+    tall = Item("1", "", "", object_name="harpoon", medium="wood", height_m=1.9, width_m=0.4, depth_m=0.3,
+                displayed="on a stand")  # fmt: skip
+    model = Item("2", "", "", object_name="Flugzeugmodell", height_m=0.3, width_m=1.2, depth_m=0.8,
+                 displayed="von der Decke abgehängt")  # fmt: skip
+    body = body_told(one.note for one in classify(tall).parameters.values())
+    assert body == "a tall thing on a stand"
+    scene = classify(model)
+    assert (scene.support, what_it_is((scene.object_class, ""))) == (Support.SUSPENDED, "scale model")
