@@ -324,7 +324,12 @@ def load_manifest(folder: str | Path, *, begun: bool = False) -> Manifest:
         there = unlisted(file, manifest)
         found = f"; beside it {'lies' if len(there) == 1 else 'lie'} {', '.join(there[:5])}" if there else ""
         more = f" and {len(there) - 5} more" if len(there) > 5 else ""
-        remedy = "add a record's files with `kouros motions add`"
+        whole = sorted(one.parent.name for one in file.parent.glob("*/manifest.toml"))
+        remedy = (
+            f"{whole[0]!r} in it is a site of its own: name that folder in its place, or move its files up"
+            if whole
+            else "add a record's files with `kouros motions add`"
+        )
         raise refusal(file, "level", f"it names no records yet{found}{more}", remedy)
     return manifest
 

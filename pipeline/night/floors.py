@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from math import exp, log
 from statistics import fmean
 
@@ -11,6 +10,7 @@ from pipeline.analysis.verdicts import EAST, LevelMotions
 from pipeline.motions.manifest import GROUND_FLOOR, FloorTable
 from pipeline.motions.site import Level, Site, levels_at
 from pipeline.motions.summary import summaries
+from pipeline.operations.workspace import near
 from pipeline.records import Item, MotionSummary
 from pipeline.records.fragility import HazardCurve
 from pipeline.records.phrases import ON_GROUND
@@ -128,10 +128,9 @@ def strangers(floors: Floors, galleries: Iterable[str]) -> list[str]:
     for floor, names in floors.root.items():
         for name in names:
             if name != "*" and name not in there:
-                close = get_close_matches(name, there, n=1)
-                hint = f"; is {close[0]!r} meant?" if close else ""
                 notes.append(
-                    f"kouros.toml puts gallery {name!r} on floor {floor!r}: the inventory has no such gallery{hint}"
+                    f"kouros.toml puts gallery {name!r} on floor {floor!r}: the inventory has no such gallery"
+                    f"{near(name, there)}"
                 )
     return notes
 

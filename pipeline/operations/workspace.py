@@ -1,5 +1,6 @@
 """Workspace of a job: settings, database, lock."""
 
+import re
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -214,7 +215,9 @@ def near(name: str, known: Collection[str]) -> str:
     str
         "; did you mean 'x' or 'y'?", or "" where none is like it.
     """
-    close = get_close_matches(name, known, n=3)
+    # Of "Gallery 11" the gallery is meant that begins so, and none whose letters are as many.
+    begins = sorted(one for one in known if re.match(rf"{re.escape(name)}\b", one, re.IGNORECASE)) if name else []
+    close = begins[:3] or get_close_matches(name, known, n=3)
     return f"; did you mean {' or '.join(map(repr, close))}?" if close else ""
 
 

@@ -15,8 +15,9 @@ from pipeline.settings import Settings, load_settings, template
 
 MANIFEST = """\
 # The motions of your site; it names none yet.  `kouros motions add FILES...` copies a record's files here and writes
-# what they say below; comments stay.  Then `kouros motions show` and `kouros check`.  The documentation
-# (docs/how-to/records.md) lists what a record may say; an error names the key.
+# what they say below; comments stay.  Then `kouros motions show` and `kouros check`.  A site that is complete is copied
+# over this folder, not into it (`cp -r THERE/. site_motions/site`), or named in kouros.toml, [site] folder.  The
+# documentation (docs/how-to/records.md) lists what a record may say; an error names the key.
 
 [site]
 name = "Our site"

@@ -289,6 +289,9 @@ def test_a_class_that_there_is_not_is_refused_with_the_nearest() -> None:
         InputError, match=r"\[\[house\]\] 1 \(class vessle\): class: there is no class 'vessle'; is 'vessel'"
     ):
         house(rule(**{"class": "vessle"}, friction=0.3))
+    # People say what is in its title; the letters of wall_painting are nearer.
+    with pytest.raises(InputError, match=r"there is no class 'paintings'; is 'framed' meant"):
+        house(rule(**{"class": "paintings"}, hanging="wire"))
 
 
 def test_a_rule_is_what_its_own_words_in_toml_say() -> None:

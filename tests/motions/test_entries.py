@@ -66,6 +66,11 @@ def test_the_manifest_of_a_new_site_is_valid_and_says_what_comes_next(begun: Pat
             MotionError, match="it names no records yet; add a record's files with `kouros motions add`"
         ):
             use(begun)
+    # A site that is copied into the folder and not over it: which one is meant is said.
+    shutil.copytree(DEMO, begun / "copied")
+    with pytest.raises(MotionError, match="'copied' in it is a site of its own: name that folder"):
+        load_manifest(begun)
+    shutil.rmtree(begun / "copied")
     shutil.copy(DEMO / "CI.CLC..HNE.mseed", begun)
     (motions,) = (d for d in diagnose(begun.parents[1] / "kouros.toml") if d.what == "motions")
     assert motions.state == "warning"

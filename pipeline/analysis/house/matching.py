@@ -27,6 +27,7 @@ from pipeline.records import (
     SurfaceMaterial,
 )
 from pipeline.records import phrases as say
+from pipeline.tables import table
 from pipeline.tables.surface_rows import surfaces_in
 
 _WORDS: Mapping[StrEnum, str] = {
@@ -238,7 +239,7 @@ class HouseRules:
         for at, rule in enumerate(self.rules):
             for name in rule.object_class:
                 if name not in classes:
-                    close = get_close_matches(name, classes, n=1)
+                    close = _titled(name, classes) or get_close_matches(name, classes, n=1)
                     hint = f"; is {close[0]!r} meant?" if close else f"; use one of {', '.join(sorted(classes))}"
                     raise InputError(f"{self.named(at)}: class: there is no class {name!r}{hint}")
         for at, one in enumerate(self.rules):
@@ -351,6 +352,13 @@ class _Weighing:
             return
         self.used.add(first)
         self.stated[about] = HouseStatement(name, value, rule.words, rule.source)
+
+
+def _titled(name: str, classes: Sequence[str]) -> list[str]:
+    """Return the classes in whose titles a word stands: who says paintings means framed."""
+    word = name.casefold().removesuffix("s")
+    titles = {row["class"]: row["title"].casefold() for row in table("classes")} if word else {}
+    return [one for one in classes if re.search(rf"\b{re.escape(word)}", titles.get(one, ""))]
 
 
 def _disagree(one: HouseRule, other: HouseRule) -> str:
