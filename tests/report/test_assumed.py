@@ -12,7 +12,7 @@ from pipeline.records import Anchorage, Furniture, Hanging, Item, Scene, Support
 from pipeline.records import phrases as say
 from pipeline.records.phrase import Clause, Number
 from pipeline.records.phrases import PHRASES
-from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced
+from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced, together
 from pipeline.report.language import language, said, speaking
 from pipeline.report.pages.scene_words import left_out
 from pipeline.report.units import Units
@@ -213,3 +213,10 @@ def test_what_a_person_reads_of_a_doubt_is_in_their_language() -> None:
 def test_levels_are_told_in_the_readers_units() -> None:
     text = "Level design: the worst of 2 motions, PGA 0.3 g to 0.6 g, PGV 25.4 cm/s to 50.8 cm/s"
     assert assumed(text, Units("in")).endswith("PGV 10\u202fin/s to 20\u202fin/s")
+
+
+def test_a_reason_that_several_measures_share_is_said_once() -> None:
+    stands = "it does not stand free"
+    texts = (f"Non-slip pad: {stands}", "Keep clear: it does not move", f"Museum putty: {stands}", "Nothing helps")
+    told = [rejected(text, Units()) for text in together(texts)]
+    assert told == [f"Non-slip pad, Museum putty: {stands}", "Keep clear: it does not move", "Nothing helps"]

@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import base64
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+
+from pipeline.mitigate.saying import IN_WARMTH
+from pipeline.report import render
+
+from . import builder
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -105,3 +111,25 @@ def test_it_prints_on_the_printers_paper_with_its_details(browser: Chrome, repor
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
     assert shown
     assert set(split) == {"avoid"}
+
+
+def test_an_errand_on_paper_without_the_entries_says_what_has_to_be_minded(browser: Chrome, tmp_path: Path) -> None:
+    """What only the entry said would be lost with it; on the screen, where the entry stands below, it is said there."""
+    record = builder.record()
+    assessments = list(record.assessments)
+    at = next(i for i, one in enumerate(assessments) if one.recommendations)
+    told = assessments[at].recommendations[0]
+    minded = replace(told, sentence=f"{told.sentence} {IN_WARMTH}", measure="alone", title="Dots of wax")
+    assessments[at] = replace(assessments[at], recommendations=(minded,))
+    render(replace(record, assessments=tuple(assessments)), tmp_path / "report")
+    (page,) = (one for one in (tmp_path / "report").glob("*.html") if 'class="small paper"' in one.read_text("utf-8"))
+    browser.get(page.as_uri())
+    errand = browser.find_element("css selector", ".first li p.paper")
+    assert not errand.is_displayed()
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    try:
+        assert errand.text == IN_WARMTH
+        browser.execute_script("document.getElementById('with-entries').checked = true")
+        assert not errand.is_displayed()
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})

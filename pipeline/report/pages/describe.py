@@ -24,14 +24,14 @@ from pipeline.records import (
     Verdict,
 )
 from pipeline.records.result import BOUNDS
-from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced
+from pipeline.report.assumed import assumed, happening, rejected, rule_words, sourced, together
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
 from pipeline.report.pages.chances import chance_view, left_over, open_for, worth_words
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
 from pipeline.report.pages.notes import Memory, finding_key
-from pipeline.report.pages.plainly import brief_measure, dangers, full_measure, plain_measure
+from pipeline.report.pages.plainly import brief_measure, cautions, dangers, full_measure, plain_measure
 from pipeline.report.pages.scene_words import furniture, held, left_out, taken_words, what_it_is
 from pipeline.report.pages.survey_words import missing_words, wish_views
 from pipeline.report.pages.tallies import finding_order, finding_state, grave, state_of, urgency
@@ -354,13 +354,14 @@ class Describer:
             measure=clean(r.measure),
             named=NAMED_FIRST in r.sentence,
             brief=brief_measure(r, self._units),
+            cautions=tuple(cautions(r)),
             title=said(clean(r.title)),
             level=clean(r.level),
             plain=plain_measure(r, self._units) + left_over(r),
             sentence=clean(self._units.fill(full_measure(r), values, where, by_hand(self._units))) + left_over(r),
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
-            rejected=tuple(self._sayings.rejected(text) for text in r.rejected),
+            rejected=tuple(self._sayings.rejected(text) for text in together(r.rejected)),
             source=self._sayings.told(sourced, clean(r.source)),
         )
 

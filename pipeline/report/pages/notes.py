@@ -17,6 +17,9 @@ from pipeline.report.text import escaped
 _HEAD = 48
 """The longest beginning of a note (up to its colon) that is repeated in front of its number."""
 
+_TITLES = 1000
+"""The same where it names measures: all of them were tried, and are to be told."""
+
 
 @dataclass(frozen=True, slots=True)
 class PageNote:
@@ -32,10 +35,13 @@ class Notes:
 
     letter : what the numbers of this list begin with, so that two lists are told apart on paper
     headed : whether a citation repeats the beginning of the text, up to its colon
+    most   : the longest beginning that is repeated
     texts  : (text, source) as often as each is used; what is used once is not listed but written where it is used
     """
 
-    def __init__(self, letter: str, texts: Iterable[tuple[str, str]], *, headed: bool = True) -> None:
+    def __init__(
+        self, letter: str, texts: Iterable[tuple[str, str]], *, headed: bool = True, most: int = _HEAD
+    ) -> None:
         uses: Counter[str] = Counter()
         sources: dict[str, dict[str, None]] = {}
         for text, source in texts:
@@ -46,7 +52,7 @@ class Notes:
         self.listed = tuple(
             PageNote(f"{letter}{i}", text, parted(sources.get(text, ()))) for i, text in enumerate(shared, 1)
         )
-        self._headed = headed
+        self._headed, self._most = headed, most
         self._places = {note.text: at for at, note in enumerate(self.listed)}
         self._tags = {
             (n.text, cited): f" {escaped(n.label) if cited else _link(n.label, n.label)}"
@@ -72,7 +78,7 @@ class Notes:
             place = self._places.get(text)
             follows = bool(runs) and place is not None and self._places.get(runs[-1][-1]) == place - 1
             # A text without a short beginning would not be told apart in a longer link.
-            if follows and _head(text) and _head(runs[-1][0]) and self._headed:
+            if follows and self._head(text) and self._head(runs[-1][0]) and self._headed:
                 runs[-1].append(text)
             else:
                 runs.append([text])
@@ -82,9 +88,13 @@ class Notes:
         if texts[0] not in self._places:
             return escaped(texts[0])
         first, last = (self.listed[self._places[text]].label for text in (texts[0], texts[-1]))
-        heads = parted(filter(None, map(_head, texts))) if self._headed else ""
+        heads = parted(filter(None, map(self._head, texts))) if self._headed else ""
         labels = first if first == last else _("%(first)s to %(last)s") % {"first": first, "last": last}
         return _link(first, f"{heads} {labels}".strip())
+
+    def _head(self, text: str) -> str:
+        head, colon, _rest = text.partition(":")
+        return head if colon and len(head) <= self._most else ""
 
     def tag(self, text: str, source: str, *, cited: bool = False) -> str:
         """Return " A5" for a text that is listed, as a link where none stands beside, or it and its source in brackets.
@@ -146,7 +156,7 @@ def page_notes(objects: Iterable[ObjectView]) -> PageNotes:
                 )
             ),
         ),
-        rejected=Notes("R", ((text, "") for o in told for m in o.measures for text in m.rejected)),
+        rejected=Notes("R", ((text, "") for o in told for m in o.measures for text in m.rejected), most=_TITLES),
         skipped=Notes("M", ((text, "") for o in told for text in _left_out(o, alone)), headed=False),
         alone=alone,
         sources=tuple(dict.fromkeys((m.title, m.source) for o in told for m in o.measures if m.source)),
@@ -165,11 +175,6 @@ def _left_out(view: ObjectView, alone: Collection[str]) -> list[str]:
 
 
 _origin = attrgetter("origin")
-
-
-def _head(text: str) -> str:
-    head, colon, _rest = text.partition(":")
-    return head if colon and len(head) <= _HEAD else ""
 
 
 def _link(label: str, shown: str) -> str:

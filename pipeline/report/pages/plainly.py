@@ -60,10 +60,7 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     of_weight = times_weight(advice)
     at_best = any(one in advice.sentence for one in ONLY_AT_BEST)
     told, numbers = _advised(advice, units, of_weight=of_weight)
-    told += [said(row.care) for row in fixing_strengths().values() if row.care in advice.sentence]
-    told += [said(one) for one in SAID_AS_IT_IS if one in advice.sentence]
-    if FINISHED in advice.sentence:
-        told.append(_("It has paint, gilding or lacquer: ask a conservator first where it may be touched."))
+    told += cautions(advice)
     if OF_MEAN in advice.sentence:
         told.append(_("That is for the mean of the earthquakes: in the worst of them it moves %(worst)s.") % numbers)
     if HEAVIEST in advice.sentence:
@@ -96,6 +93,15 @@ def plain_measure(advice: Recommendation, units: Units) -> str:
     elif SIZED_WEIGHED in advice.sentence:
         told.append(_("Measure its base first."))
     return " ".join(told)
+
+
+def cautions(advice: Recommendation) -> list[str]:
+    """Return what whoever does it has to mind, a sentence each."""
+    told = [said(row.care) for row in fixing_strengths().values() if row.care in advice.sentence]
+    told += [said(one) for one in SAID_AS_IT_IS if one in advice.sentence]
+    if FINISHED in advice.sentence:
+        told.append(_("It has paint, gilding or lacquer: ask a conservator first where it may be touched."))
+    return told
 
 
 def brief_measure(advice: Recommendation, units: Units) -> str:

@@ -105,6 +105,7 @@ class MeasureView:
 
     plain    : what to do, for who does it
     brief    : the same in a list of many objects
+    cautions : what of it has to be minded, a sentence each
     sentence : the same with all its numbers
     named    : whether somebody is to say first what the object is
     """
@@ -120,6 +121,7 @@ class MeasureView:
     source: str
     named: bool = False
     brief: str = ""
+    cautions: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,6 +299,12 @@ class TaskView:
     sets: tuple[str, ...] = ()
     advised: bool = True
     measure: str = ""
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """What has to be minded with every one of the objects, for paper without their entries."""
+        told = [m.cautions for o in self.objects for m in o.measures if m.measure == self.measure]
+        return tuple(one for one in told[0] if all(one in each for each in told)) if told else ()
 
     @property
     def grave(self) -> int:
