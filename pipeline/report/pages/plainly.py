@@ -209,8 +209,8 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
     "hold": lambda: _("Have a mount-maker hold it on its mount, for %(times)s times its weight."),
     "restrain": lambda: _("Fix it to the wall at its lower corners too: the fixings must hold %(force)s together."),
     "stays": lambda: _(
-        "Have it stayed from swinging by three or more lines or rods to the ceiling or the walls all round: each must "
-        "hold %(force)s. Give it a slack safety line too."
+        "Have it stayed from swinging by three or more lines or rods to the ceiling, the walls or the case all round: "
+        "each must hold %(force)s. Give it a slack safety line too."
     ),
     "friction_isolator": lambda: _("Stand it on a low-friction pad, with %(clearance)s free on all sides."),
     "horizontal_isolator": lambda: _("Have it fastened to an isolator that moves by up to %(stroke)s."),
