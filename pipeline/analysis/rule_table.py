@@ -18,7 +18,6 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Annotated
-from unicodedata import combining, normalize
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationInfo
 
@@ -27,7 +26,7 @@ from pipeline.records import Item
 from pipeline.tables import Row, TableError, read_table, table
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.ideographs import shortened_signs
-from pipeline.tables.rows import UNSEEN, Entries, checked, once
+from pipeline.tables.rows import Entries, checked, once, unmarked
 
 FLAT = 0.12
 """Depth over the larger face dimension below which a thing is a sheet, not a body."""
@@ -170,8 +169,6 @@ _SHOWN = 80
 """Characters of a cell that a message repeats."""
 _SAME = str.maketrans("ıيىكة", "iییکه")
 """Letters that nobody can tell apart, in Turkish capitals, or that Arabic and Persian write differently."""
-_VOWEL_SIGNS = re.compile(r"(?<=[\u0e01-\u0eff])[\u0e31\u0e34-\u0e37\u0e47\u0e4d\u0eb1\u0eb4-\u0eb7\u0ebb\u0ecd]")
-"""Signs of Thai and Lao above a letter that are no letters, and would part a word."""
 _COUNTED = re.compile(
     r"(?<=[\u3400-\u9fff])\s?[一二两三四五六七八九十\d]+(?:对|対|双|件|组|組|套|只|尊|座|个|個|枚|副|匹|躯|体|基)(?![\u3400-\u9fff])"
 )
@@ -186,8 +183,7 @@ IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 def fold(text: str) -> str:
     """Return a text without capitals and accents, so that Büste, buste and BUSTE are the same word."""
     if not text.isascii():
-        text = "".join(c for c in normalize("NFKD", text) if not combining(c)).translate(_SAME)
-        text = _VOWEL_SIGNS.sub("", UNSEEN.sub("", text))
+        text = unmarked(text).translate(_SAME)
         text = _COUNTED.sub("", shortened_signs(text))
     return text.casefold()
 

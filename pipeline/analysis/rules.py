@@ -213,7 +213,7 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
         name = title
     # What is painted, drawn or printed is flat, whatever its title says that it shows, but for its own format.
     flat = made is not None and made.rule.object_class in PICTURES
-    named_so = name is not None and name.rule.object_class in (*_FIGURES, "bust")
+    named_so = name is not None and name.rule.name not in of.own and name.rule.object_class in (*_FIGURES, "bust")
     if flat and named_so and fold(item.object_name).strip() not in SCULPTURES:
         # A Madonna of oil on panel is a picture, in whatever field she is named.
         name = None

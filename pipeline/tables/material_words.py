@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from unicodedata import combining, normalize
 
 from pipeline.tables import table
-from pipeline.tables.rows import UNSEEN
+from pipeline.tables.rows import unmarked
 
 _WORD = re.compile(r"[^\W_]+")
 _PART = re.compile(r"[,;:.()\[\]|/]|\s[-\u2013\u2014]\s")
@@ -49,7 +48,7 @@ _OTHERWISE = frozenset({"baker", "leter", "vang"})
 
 def folded(text: str) -> str:
     """Return a text without capitals and accents."""
-    return "".join(one for one in normalize("NFKD", UNSEEN.sub("", text)) if not combining(one)).casefold()
+    return unmarked(text).casefold()
 
 
 @cache

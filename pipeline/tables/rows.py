@@ -6,6 +6,7 @@ from enum import StrEnum
 from functools import cache
 from types import MappingProxyType
 from typing import Annotated, TypeVar
+from unicodedata import category, normalize
 
 from pydantic import (
     AfterValidator,
@@ -45,6 +46,15 @@ SOME_WORDS = r"(?:\w+\W+){0,3}"
 
 UNSEEN = re.compile("[\u00ad\u200b-\u200f\u202a-\u202e\u2060-\u2069\ufeff]")
 """Signs that show nothing: soft hyphens, marks of direction, what parts the letters of a Persian word."""
+
+
+def unmarked(text: str) -> str:
+    """Return a text decomposed (NFKD), without the marks of its letters and without what shows nothing.
+
+    Of scripts whose vowels are marks, such as Devanagari and Thai, the consonants are left: enough to tell words by.
+    """
+    return "".join(one for one in normalize("NFKD", UNSEEN.sub("", text)) if category(one)[0] != "M")
+
 
 UNPARTED = re.compile("[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
 from typing import Annotated
-from unicodedata import combining, normalize
+from unicodedata import normalize
 
 from pydantic import AfterValidator
 
@@ -31,7 +31,7 @@ from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.errors import InputError
 from pipeline.tables import table
 from pipeline.tables.ideographs import shortened_signs
-from pipeline.tables.rows import Entries, checked
+from pipeline.tables.rows import Entries, checked, unmarked
 
 TEXTS = "dimensions"
 """What a column of texts with dimensions is called here; it is no field of the record."""
@@ -184,11 +184,7 @@ def _singular(name: str) -> str:
 
 def plain(name: str) -> str:
     """Return a name as it is compared: no capitals, accents, marks and articles, "no" for every word for number."""
-    bare = "".join(
-        c
-        for c in normalize("NFKD", _ELIDED.sub(" ", _CAMEL.sub(" ", normalize("NFC", name.replace("#", " no ")))))
-        if not combining(c)
-    )
+    bare = unmarked(_ELIDED.sub(" ", _CAMEL.sub(" ", normalize("NFC", name.replace("#", " no ")))))
     # NFKD takes the voicing marks off Japanese signs; they are put together again.
     # In capitals nobody can tell the two i of Turkish apart.
     bare = shortened_signs(normalize("NFC", bare))

@@ -60,6 +60,8 @@ def _letters(short: Mapping[str, int], told: set[str]) -> dict[int, ColumnMeanin
 def _turkish(short: Mapping[str, int], told: set[str]) -> dict[int, ColumnMeaning]:
     """Return what "En" and "Boy" mean beside each other: width, and the height, or else the length."""
     folded = {name.casefold(): key for name, key in short.items()}
+    if "en" in folded and told >= {"height_m", "depth_m"} and "width_m" not in told:
+        return {folded["en"]: ColumnMeaning("width_m", _RANK)}
     if not {"en", "boy"} <= folded.keys():
         return {}
     upright = LENGTH if "height_m" in told else "height_m"
