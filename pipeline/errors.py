@@ -4,7 +4,10 @@ Whatever is raised that is no `KourosError` is a fault of Kouros, however it is 
 library is not the user's.
 """
 
+import re
 import traceback
+from collections.abc import Collection
+from difflib import get_close_matches
 from pathlib import Path
 from typing import ClassVar
 
@@ -60,3 +63,24 @@ def mends_toml(problem: Exception) -> str:
     if any(word in str(problem) for word in ("twice", "overwrite", "mutate")):
         return "that table or key is there before: put all of its lines below the first of them"
     return "quote texts and write one key a line"
+
+
+def near(name: str, known: Collection[str]) -> str:
+    """Return a question after the names that are most like one that is not known.
+
+    Parameters
+    ----------
+    name : str
+        The one that is not known.
+    known : collection of str
+        Those that are.
+
+    Returns
+    -------
+    str
+        "; did you mean 'x' or 'y'?", or "" where none is like it.
+    """
+    # Of "Gallery 11" the gallery is meant that begins so, and none whose letters are as many.
+    begins = sorted(one for one in known if re.match(rf"{re.escape(name)}\b", one, re.IGNORECASE)) if name else []
+    close = begins[:3] or get_close_matches(name, known, n=3)
+    return f"; did you mean {' or '.join(map(repr, close))}?" if close else ""

@@ -30,8 +30,8 @@ def _keyed(words: Sequence[str], option: str) -> dict[str, str]:
 
 def _accepted(words: Sequence[str]) -> dict[str, str]:
     """REASON for every check that refuses, or CHECK=REASON for one; a reason may hold "=" itself behind a blank."""
+    from pipeline.errors import near
     from pipeline.motions.errors import JUDGEMENTS
-    from pipeline.operations.workspace import near
 
     made = {}
     for word in words:

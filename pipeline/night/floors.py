@@ -7,10 +7,10 @@ from statistics import fmean
 
 from pipeline.analysis.fragility.objects import Stripe
 from pipeline.analysis.verdicts import EAST, LevelMotions
+from pipeline.errors import near
 from pipeline.motions.manifest import GROUND_FLOOR, FloorTable
 from pipeline.motions.site import Level, Site, levels_at
 from pipeline.motions.summary import summaries
-from pipeline.operations.workspace import near
 from pipeline.records import Item, MotionSummary
 from pipeline.records.fragility import HazardCurve
 from pipeline.records.phrases import ON_GROUND

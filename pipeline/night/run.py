@@ -13,7 +13,7 @@ from pipeline.collection.database import damage_told, verify_file
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.inventory.records import DamagedRecordError, repair
 from pipeline.collection.listing import Listing
-from pipeline.errors import DamageWarning, InputError
+from pipeline.errors import DamageWarning, InputError, near
 from pipeline.motions.site import Site
 from pipeline.night.importing import Imported, import_collection, source_of
 from pipeline.night.photographs import Photographs
@@ -28,7 +28,7 @@ from pipeline.operations.dry_run import DryRunWarning, rehearsed
 from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, reports_lost, status, terms_of
 from pipeline.operations.run_summary import SUMMARY, Stores, Summary, summary_text
 from pipeline.operations.stopping import uninterrupted
-from pipeline.operations.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
+from pipeline.operations.workspace import UsageError, Workspace, locked, open_workspace, tidy
 from pipeline.records import Page, Progress, RunRecord, Tally, Urgent
 from pipeline.report import lasting_name, publish
 from pipeline.report.files.manifest import PreviousReport

@@ -1,10 +1,8 @@
 """Workspace of a job: settings, database, lock."""
 
-import re
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -198,27 +196,6 @@ class Workspace:
     def reports(self) -> Path:
         """The folder of all reports."""
         return self.settings.path(self.settings.report.folder)
-
-
-def near(name: str, known: Collection[str]) -> str:
-    """Return a question after the names that are most like one that is not known.
-
-    Parameters
-    ----------
-    name : str
-        The one that is not known.
-    known : collection of str
-        Those that are.
-
-    Returns
-    -------
-    str
-        "; did you mean 'x' or 'y'?", or "" where none is like it.
-    """
-    # Of "Gallery 11" the gallery is meant that begins so, and none whose letters are as many.
-    begins = sorted(one for one in known if re.match(rf"{re.escape(name)}\b", one, re.IGNORECASE)) if name else []
-    close = begins[:3] or get_close_matches(name, known, n=3)
-    return f"; did you mean {' or '.join(map(repr, close))}?" if close else ""
 
 
 def site_folder(home: Path, name: str) -> Path:

@@ -12,10 +12,11 @@ from pipeline.analysis.classify import object_classes
 from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.inventory import items_named, object_numbers
 from pipeline.collection.record import digest_of
+from pipeline.errors import near
 from pipeline.mitigate.rows import Isolator
 from pipeline.models import MODELS
 from pipeline.motions.manifest import load_manifest
-from pipeline.operations.workspace import UsageError, Workspace, near, site_folder
+from pipeline.operations.workspace import UsageError, Workspace, site_folder
 from pipeline.quantities import Quantity
 from pipeline.records import Basis, Decision, DecisionKind, Verdict, in_force
 from pipeline.store.decisions import add_decision, looked_at, read_decisions

@@ -12,14 +12,14 @@ from pathlib import Path
 from pipeline.analysis.house.matching import HouseEffect, HouseRules
 from pipeline.cache import Cache
 from pipeline.collection.database import database_url, open_for_reading, verify_file
-from pipeline.errors import KourosError
+from pipeline.errors import KourosError, near
 from pipeline.extensions import ExtensionWarning, extension_versions
 from pipeline.models import MODELS
 from pipeline.night.house_effects import each_effect
 from pipeline.operations.hooks import look, named
 from pipeline.operations.report_status import FAILED, GOOD, RUNNING, last_good, reports_lost, status
 from pipeline.operations.secrets import hider
-from pipeline.operations.workspace import LOCK, LockedError, Workspace, locked, near
+from pipeline.operations.workspace import LOCK, LockedError, Workspace, locked
 from pipeline.quantities import counted
 from pipeline.records import Item, Progress
 from pipeline.report.files.manifest import verify_report

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from pipeline.errors import near
 from pipeline.operations.report_status import presentation
-from pipeline.operations.workspace import UsageError, Workspace, near
+from pipeline.operations.workspace import UsageError, Workspace
 from pipeline.planning.choice import EffortLimits
 from pipeline.planning.plan import ErrandPlan
 from pipeline.records import Page, RunRecord
