@@ -37,19 +37,30 @@ _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
 ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
     r"|salon|sala|salone|galleria|galería|galeria|zaal|\w*sal|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
-    r"|kitchen|bedroom|parlou?r|nursery|study|library|dining room|drawing room|barn|stable|cellar|attic|chapel|sacristy"
-    r"|nave|choir|stairs|staircase|corridor|courtyard|garden|küche|stube|\w+stube|\w*kammer|scheune|stall|keller|diele"
-    r"|flur|\w*zimmer|\w*kapelle|sakristei|langhaus|chor|treppenhaus|\w*hof|garten|dachboden|tenne|cuisine|chambre"
-    r"|grange|étable|cave|grenier|bibliothèque|chapelle|sacristie|chœur|escalier|couloir|cour|jardin|cucina|camera"
-    r"|stalla|fienile|cantina|soffitta|salotto|biblioteca|cappella|sacrestia|navata|presbiterio|scala|cortile"
-    r"|giardino|cocina|dormitorio|granero|establo|bodega|comedor|capilla|sacristía|nave|escalera|pasillo|patio|jardín"
-    r"|cozinha|quarto|celeiro|adega|capela|sacristia|escada|pátio|jardim|keuken|slaapkamer|schuur|kelder|zolder|kapel"
-    r"|kuchnia|izba|stodoła|stajnia|piwnica|kaplica|kuchyně|světnice|stodola|chlév|sklep|kaple|konyha|istálló|pince"
-    r"|κουζίνα|παρεκκλήσι|αυλή|κήπος|κελάρι|mutfak|ahır|kiler|avlu|bahçe|kök|stuga|lada|köket|stue|kjøkken|låve|tupa"
     r"|ruang|gedung|phòng|nhà|salla|დარბაზი|սրահ|ցուցասրահ|ห้อง\S*|القاعة|قاعة|غرفة|تالار|אולם|חדר|\w*展示室[a-z\d]{0,3})(?!\w)",
     re.IGNORECASE,
 )
 """A room that is named without a number or a mark behind it: "Fossil room Case 2"."""
+_OF_HOUSES = re.compile(
+    r"(?:[\w'\u2019.-]+\s+){0,2}(?:kitchen|bedroom|parlou?r|nursery|dining room|drawing room|barn|stable|cellar|attic"
+    r"|chapel|sacristy|nave|choir|staircase|corridor|courtyard|garden|küche|\w*stube|\w*kammer|scheune|(?<!\s)stall|keller|diele|flur"
+    r"|\w*zimmer|\w*kapelle|sakristei|langhaus|chor|treppenhaus|\w*hof|garten|dachboden|tenne|cuisine|chambre|grange"
+    r"|étable|grenier|bibliothèque|chapelle|sacristie|chœur|escalier|couloir|jardin|cucina|stalla|fienile|cantina"
+    r"|soffitta|salotto|biblioteca|cappella|sacrestia|navata|presbiterio|cortile|giardino|cocina|dormitorio|granero"
+    r"|establo|bodega|comedor|capilla|sacristía|escalera|pasillo|patio|jardín|cozinha|quarto|celeiro|adega|capela"
+    r"|sacristia|escada|pátio|jardim|keuken|slaapkamer|schuur|kelder|zolder|kapel|kuchnia|izba|stodoła|stajnia|piwnica"
+    r"|kaplica|kuchyně|světnice|stodola|chlév|kaple|konyha|istálló|κουζίνα|παρεκκλήσι|αυλή|κήπος|κελάρι|mutfak|ahır"
+    r"|kiler|avlu|bahçe|stuga|köket|kjøkken|låve|tupa)(?:\s+(?:\d\w*|[a-z]|[ivx]+))?\s*",
+    re.IGNORECASE,
+)
+"""A room of a house, a farm or a church, which is the whole that is said: "Blue bedroom", and no garden bench."""
+
+
+def names_room(text: str) -> bool:
+    """Say whether a text names a room by what it is: with a word for rooms of museums, or as one of a house."""
+    return ROOM.search(text) is not None or _OF_HOUSES.fullmatch(text) is not None
+
+
 _NUMBERED_ROOM = re.compile(
     rf"(.*?(?:{ROOM.pattern}\s?(?:no\.?|nr\.?|#|№)?\s?{_SIGN}|\S[室厅廳館실관홀]))\s+(\S.*)", re.IGNORECASE
 )

@@ -201,7 +201,7 @@ def told_by(text: str) -> HeldAs:
     HeldAs
         Of each thing that which the first row of the table says whose words are there.
     """
-    text = _WALL_CASE.sub("showcase", UNSEEN.sub(" ", text))
+    text = _WALL_CASE.sub("showcase", UNSEEN.sub("", text.replace("\u200c", " ")))
     found = [told.row for told in _rows() if told.says(text)] if text.strip() else []
     if _NUMBERED.search(text) or any(row.furniture in _ENCLOSED for row in found):
         # "East, wall, case 3": what is in a case does not hang on the wall for a word alone.

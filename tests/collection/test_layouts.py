@@ -119,11 +119,11 @@ def _decimal_commas() -> str:
 
 def _facts(number: Callable[[int, int], str]) -> str:
     lines = [
-        f"{number(at, place)};{key};{one};2024-01-01"
+        f"{number(at, place)};{key};2024-01-01T10:{at % 60}:{place};{one}"
         for at, row in enumerate(FLAT, start=7001)
         for place, (key, one) in enumerate(row.items())
     ]
-    return "\n".join(("record;field;content;changed", *lines))
+    return "\n".join(("record;field;changed;content", *lines))
 
 
 TEXTS = {

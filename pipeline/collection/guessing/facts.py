@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from pipeline.collection.guessing.names import named, unit_in
+from pipeline.collection.guessing.long_rows import VALUES
+from pipeline.collection.guessing.names import named, plain, unit_in
 from pipeline.collection.sources.facts import FactRows
 
 _FEWEST_FIELDS, _FEWEST_OBJECTS = 3, 2
@@ -15,6 +16,7 @@ _MOST_OF = 0.5
 _ONCE = 0.9
 """Share of the rows that must be the first of their object and field (judgement)."""
 _SIZES = frozenset({"height_m", "width_m", "depth_m", "length_m", "diameter_m", "mass_kg"})
+_VALUES = VALUES | {"content", "text", "data", "inhalt", "contenu", "contenuto", "contenido", "conteudo", "inhoud"}
 _LONGEST = 60
 """Characters of the name of a field."""
 
@@ -50,8 +52,9 @@ def facts_of(rows: Sequence[Sequence[str]], head: int) -> FactRows | None:
             pairs = Counter(zip(_filled_down([row[of] for row in below]), said, strict=True))
             objects = {number for number, _ in pairs}
             if "" not in objects and len(objects) >= _FEWEST_OBJECTS and len(pairs) >= _ONCE * len(below):
-                value = max(range(at + 1, len(names)), key=lambda place: len({row[place] for row in below}))
-                return FactRows(object=names[of], field=names[at], value=names[value])
+                behind = names[at + 1 :]
+                value = next((name for name in behind if plain(name) in _VALUES), behind[0])
+                return FactRows(object=names[of], field=names[at], value=value)
     return None
 
 

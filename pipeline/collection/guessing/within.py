@@ -10,7 +10,7 @@ from pipeline.collection.display_words import says_away
 from pipeline.collection.guessing.columns import Column, untaken
 from pipeline.collection.guessing.names import DESCRIPTION, named
 from pipeline.collection.guessing.questions import Question
-from pipeline.collection.places import LONGEST, ROOM, parted
+from pipeline.collection.places import LONGEST, names_room, parted
 
 _PLACED = 0.5
 """Share of a column's texts that must begin as places do (judgement)."""
@@ -61,7 +61,7 @@ def _is_place(text: str) -> bool:
     # 展厅一, 库房二: a word for a room, with its number behind it and no blank.
     room = any((what := named(text[:long])) is not None and what.field == "gallery" for long in _SIGNS_OF_ROOMS)
     called = first is not None and first.field == "gallery"
-    spoken = len(text) <= LONGEST and ROOM.search(text) is not None
+    spoken = len(text) <= LONGEST and names_room(text)
     return room or shown or called or spoken or bool(parted(text).case) or says_away(text)
 
 
