@@ -102,24 +102,19 @@ def pictured(text: str, units: Units) -> str:
     return said(text)
 
 
-_ALIKE = " | "
-"""What parts the titles of measures that were passed over for the same reason."""
-
-
-def together(texts: Iterable[str]) -> list[str]:
-    """Return which measures were passed over and why, as `rejected` takes it: those of the same reason in one text."""
-    alike: dict[str, list[str]] = {}
-    for text in texts:
-        title, _colon, why = text.partition(": ")
-        alike.setdefault(why or text, []).append(title)
-    return [why if titles == [why] else f"{_ALIKE.join(titles)}: {why}" for why, titles in alike.items()]
-
-
 def rejected(text: str, units: Units) -> str:
-    """Say which measures were passed over and why: their titles, a colon, and clauses."""
-    titles, colon, why = text.partition(": ")
-    named = ", ".join(map(said, titles.split(_ALIKE)))
-    return f"{named}{colon}{assumed(why, units)}" if colon else said(text)
+    """Say which measure was passed over and why, as the run stored it: its title, a colon, and clauses."""
+    title, colon, why = text.partition(": ")
+    return f"{said(title)}{colon}{assumed(why, units)}" if colon else said(text)
+
+
+def together(told: Iterable[str]) -> list[str]:
+    """Return what `rejected` says of several measures, those of the same reason in one text."""
+    alike: dict[str, list[str]] = {}
+    for text in told:
+        title, colon, why = text.partition(": ")
+        alike.setdefault(f"{colon}{why}", []).append(title)
+    return [f"{', '.join(titles)}{why}" for why, titles in alike.items()]
 
 
 def rule_words(rule: str) -> str:

@@ -9,6 +9,7 @@ which hardly anything was known: of most only the numbers of their objects were 
 
 import csv
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,7 @@ MISSED = 3
 """Rows of all whose class or support is another than a reader's: a chest beside a Slovenian altar, and the like."""
 
 
+@cache
 def _expected() -> dict[str, list[dict[str, str]]]:
     out = defaultdict(list)
     with (FOLDER / "expected.csv").open(encoding="utf-8", newline="") as stream:
@@ -31,6 +33,7 @@ def _expected() -> dict[str, list[dict[str, str]]]:
     return dict(out)
 
 
+@cache
 def _items(name: str) -> dict[str, Item]:
     return {item.object_number: item for item in proposed(str(FOLDER / f"{name}.csv")).reading.items}
 

@@ -218,5 +218,5 @@ def test_levels_are_told_in_the_readers_units() -> None:
 def test_a_reason_that_several_measures_share_is_said_once() -> None:
     stands = "it does not stand free"
     texts = (f"Non-slip pad: {stands}", "Keep clear: it does not move", f"Museum putty: {stands}", "Nothing helps")
-    told = [rejected(text, Units()) for text in together(texts)]
+    told = together(rejected(text, Units()) for text in texts)
     assert told == [f"Non-slip pad, Museum putty: {stands}", "Keep clear: it does not move", "Nothing helps"]

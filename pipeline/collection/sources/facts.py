@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import Name
-from pipeline.collection.sources.rows import Row
+from pipeline.collection.sources.rows import Row, check_columns
 from pipeline.collection.sources.sideways import MOST_FIELDS
 
 _AGAIN = "; "
@@ -61,30 +61,24 @@ def spread(rows: Iterator[Row], facts: FactRows, file: str) -> Iterator[Row]:
     if header is None:
         return
     names = [name.strip() for name in header.cells]
-    for key, name in facts:
-        if name not in names:
-            raise CollectionError(
-                f"{file}: [source.facts] {key}: there is no column {name!r}; its columns are "
-                f"{', '.join(map(repr, names[:80]))}. Name one of them in the mapping"
-            )
+    check_columns(facts, names, f"{file}: [source.facts]")
     of, called, said = (names.index(name) for name in (facts.object, facts.field, facts.value))
     fields: dict[str, None] = {facts.object: None}
     objects: dict[str, _FactsOfOne] = {}
     broken: list[Row] = []
     above = ""
+    unnamed = (
+        "a fact without the name of its field, or of no object",
+        f"fill {facts.field!r} and {facts.object!r}, or leave the row out",
+    )
     for row in rows:
-        above = number = row.cells[of].strip() or above if not row.fault[0] else above
-        fact = "" if row.fault[0] else row.cells[called].strip()
-        if row.fault[0] or not fact or not number:
-            why = (
-                row.fault
-                if row.fault[0]
-                else (
-                    "a fact without the name of its field, or of no object",
-                    f"fill {facts.field!r} and {facts.object!r}, or leave the row out",
-                )
-            )
-            broken.append(Row(0, row.line, [number], why))
+        if row.fault[0]:
+            broken.append(Row(0, row.line, [above], row.fault))
+            continue
+        above = number = row.cells[of].strip() or above
+        fact = row.cells[called].strip()
+        if not fact or not number:
+            broken.append(Row(0, row.line, [number], unnamed))
             continue
         fields.setdefault(fact)
         if len(fields) > MOST_FIELDS:

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import LongForm
 from pipeline.collection.sources.measurement_terms import kind_of
 from pipeline.collection.sources.measurements import OF_MEASUREMENTS, OTHER, Measurements
-from pipeline.collection.sources.rows import Row
+from pipeline.collection.sources.rows import Row, check_columns
 
 COLUMNS = OF_MEASUREMENTS
 """What takes the place of the columns of type, value, unit and part."""
@@ -85,12 +84,7 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
         *(("sides", side.column) for side in long.sides),
         *(("again", name) for one in long.again for name in (one.type, one.value, one.unit, one.part)),
     )
-    for key, name in keyed:
-        if name is not None and name not in names:
-            raise CollectionError(
-                f"{file}: [source.long] {key}: there is no column {name!r}; its columns are "
-                f"{', '.join(map(repr, names[:80]))}. Name one of them in the mapping"
-            )
+    check_columns(keyed, names, f"{file}: [source.long]")
     told = {names.index(name) for key, name in keyed if name is not None and key not in ("object", "called")}
     kept = [at for at in range(len(names)) if at not in told]
     yield Row(0, header.line, [header.cells[at] for at in kept] + list(COLUMNS))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import date, datetime, time
 from decimal import Decimal
 from math import isfinite
 from types import MappingProxyType
 from typing import NamedTuple
+
+from pipeline.collection.errors import CollectionError
 
 NO_FAULTS: Mapping[int, tuple[str, str]] = MappingProxyType({})
 """The faults of cells of a row that has none."""
@@ -41,6 +43,31 @@ class Row(NamedTuple):
     cells: list[str]
     fault: tuple[str, str] = ("", "")
     faults: Mapping[int, tuple[str, str]] = NO_FAULTS
+
+
+def check_columns(keyed: Iterable[tuple[str, str | None]], names: Sequence[str], where: str) -> None:
+    """Refuse a section of a mapping that names a column which is not there.
+
+    Parameters
+    ----------
+    keyed : iterable of (str, str or None)
+        The keys of the section, each with the column that it names.
+    names : sequence of str
+        The columns that are there.
+    where : str
+        The source and the section, in messages.
+
+    Raises
+    ------
+    CollectionError
+        Naming the key, the column and those that are there.
+    """
+    for key, name in keyed:
+        if name is not None and name not in names:
+            raise CollectionError(
+                f"{where} {key}: there is no column {name!r}; its columns are {', '.join(map(repr, names[:80]))}. Name "
+                "one of them in the mapping"
+            )
 
 
 def as_text(value: object) -> str:

@@ -361,7 +361,7 @@ class Describer:
             sentence=clean(self._units.fill(full_measure(r), values, where, by_hand(self._units))) + left_over(r),
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
-            rejected=tuple(self._sayings.rejected(text) for text in together(r.rejected)),
+            rejected=tuple(together(map(self._sayings.rejected, r.rejected))),
             source=self._sayings.told(sourced, clean(r.source)),
         )
 
