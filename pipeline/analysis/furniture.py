@@ -19,7 +19,7 @@ from pipeline.records import Anchorage, Estimate, Furniture, Item, Origin, Scene
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.furniture_rows import ANY, STANDING, FurnitureRow, UsualFurniture, usual_furniture
-from pipeline.tables.held_rows import words_for
+from pipeline.tables.held_rows import in_no_case, words_for
 from pipeline.tables.limit_rows import limit
 from pipeline.tables.rows import any_of
 from pipeline.tables.surface_rows import surfaces_in
@@ -64,6 +64,7 @@ _SLOPES = re.compile(
 WHAT_HANGS = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what hangs from above"}
 """What is said of furniture to be usual for, where it is so for whatever hangs."""
 IN_THE_OPEN = "what stands in the open"
+IN_NO_CASE = "what its record puts in no case"
 """The same of whatever stands in a garden, a court, on a terrace."""
 ON_WHEELS = "what stands on wheels"
 """The same of what would stand on a pedestal, and rolls."""
@@ -215,6 +216,9 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
     if row.furniture in _CASES and not hangs and in_the_open(item.gallery):
         words = f"assumed for: {IN_THE_OPEN}, usual_furniture.csv; not recorded"
         return FurnitureGuess(Furniture.FLOOR, Origin.ASSUMED, words, "judgement: no case stands under the sky")
+    if row.furniture is Furniture.SHOWCASE and not hangs and in_no_case(item.displayed):
+        words = f"assumed for: {IN_NO_CASE}, usual_furniture.csv; not recorded"
+        return FurnitureGuess(Furniture.PEDESTAL, Origin.ASSUMED, words, "judgement: its record says it is in no case")
     if row.furniture is Furniture.PEDESTAL and not hangs and on_wheels(item, object_class) is not None:
         words = f"assumed for: {ON_WHEELS}, usual_furniture.csv; not recorded"
         return FurnitureGuess(Furniture.FLOOR, Origin.ASSUMED, words, "judgement: nothing rolls about on a pedestal")

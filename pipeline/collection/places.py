@@ -17,6 +17,8 @@ _ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
 _SIGN = r"(?:[a-z]{0,3}\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS, MW4."""
 
+_ON_ITS_FLOOR = re.compile(r"(\w[\w' ]*\w)(?<!\bon)(?<!\bthe) (floor)", re.IGNORECASE)
+"""What lies there: "Library floor", and no storey, "Second floor"."""
 _NOTHING_BEHIND = re.compile(r"\s*[,;/>|]\s*[-–—.]*\s*$")
 """What stands for a case that a place has not: "Gartensaal / –"."""
 _OF_WALLS = re.compile(
@@ -29,10 +31,19 @@ _OF_WALLS = re.compile(
 _CODES = re.compile(
     r"([A-Z]{1,3}\d{1,3})[.\-_/](?:(?P<case>(?:C|CASE|V|VIT|SC)\d{1,3}(?:[.\-_/][A-Z]{1,3}\d{1,3}){0,2})"
     r"|(?P<spot>(?:P|PL|W|WL|F|FL)\d{1,3}))"
+    r"|(?P<room>[A-Z]{1,3}\d{1,3}[a-z]?)/(?:(?P<dc>dc\d{1,3}[a-z]?)|(?P<od>od\d{0,3}))"
 )
-"""A place by its signs: the room, and a case with a shelf in it or a spot, G12.C03.S2 and G12.P01."""
+"""A place by its signs: the room, and a case with a shelf in it or a spot, G12.C03.S2 and G12.P01; display cases and
+open display as the British Museum writes them, G12/dc3 and G24/od."""
 _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
 """A case by its sign alone, ahead of a shelf in it: CG-12."""
+
+_NO_CASE = (
+    r"(?!case (?:FS|EXP)\b|(?:hors|sans|outside(?: of)?|not in|ohne|außerhalb(?: der)?|fuori|senza|fuera de|sin"
+    r"|fora d[ae]|sem|buiten(?: de)?|zonder|utanför|uden|poza|bez|mimo|вне|без|εκτός)\b)"
+)
+"""Free-standing and exposed, in the column for cases of the Victoria and Albert Museum, and "hors vitrine", as the
+Louvre says it: such things share no case."""
 
 ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
@@ -42,7 +53,8 @@ ROOM = re.compile(
 )
 """A room that is named without a number or a mark behind it: "Fossil room Case 2"."""
 _OF_HOUSES = re.compile(
-    r"(?:[\w'\u2019.-]+\s+){0,2}(?:kitchen|bedroom|parlou?r|nursery|dining room|drawing room|barn|stable|cellar|attic"
+    r"(?:[\w'\u2019.-]+\s+){0,2}(?:kitchen|bedroom|library|ballroom|parlou?r|nursery|barn"
+    r"|(?:dining|drawing|dressing|breakfast|morning) room|stable|cellar|attic"
     r"|chapel|sacristy|nave|choir|staircase|corridor|courtyard|garden|küche|\w*stube|\w*kammer|scheune|(?<!\s)stall|keller|diele|flur"
     r"|\w*zimmer|\w*kapelle|sakristei|langhaus|chor|treppenhaus|\w*hof|garten|dachboden|tenne|cuisine|chambre|grange"
     r"|étable|grenier|bibliothèque|chapelle|sacristie|chœur|escalier|couloir|jardin|cucina|stalla|fienile|cantina"
@@ -71,6 +83,24 @@ _NAMED_ROOM = re.compile(r"((?:[A-Z\u00c0-\u00de][\w'\u2019-]+\s+){2})([a-z].*)"
 """Two words with capitals ahead of one without: "Mana Whenua plinth 2", but no "Large plinth 2"."""
 
 
+_SHOWN_AT = re.compile(
+    r"\s*([^:(]{2,40}?)(?: (?:at|in|im|bei|à|en|a))?\s*(?::\s*([^\s:].*?)|\(\s*([^()]+?)\s*\))\s*", re.DOTALL
+)
+"""That something is on display, and where: "Currently on view at: Gallery 109", "On display (G12/dc3)"."""
+
+
+def located(text: str) -> str:
+    """Return a place without the words ahead of it that say that what is there is on display.
+
+    Parameters
+    ----------
+    text : str
+        As the museum writes it: "On display: Hall of Musical Instruments".
+    """
+    found = _SHOWN_AT.fullmatch(text) if len(text) <= LONGEST else None
+    return found[2] or found[3] if found and says_shown(found[1]) else text
+
+
 class NamedPlace(NamedTuple):
     """What a place names: a room, a case, plinth or shelf in it, how a thing is held there; "" for what it does not."""
 
@@ -92,12 +122,17 @@ def parted(text: str) -> NamedPlace:
     """
     if len(text) > LONGEST:
         return NamedPlace(text)
+    text = located(text)
     coded = _CODES.fullmatch(text)
     if coded:
-        return NamedPlace(coded[1], coded["case"] or "", coded["spot"] or "")
+        case, spot = coded["case"] or coded["dc"] or "", coded["spot"] or coded["od"] or ""
+        return NamedPlace(coded[1] or coded["room"], case, spot)
     enclosed = _ENCLOSED.fullmatch(text)
     if enclosed and _tells(enclosed[2]):
         return NamedPlace(enclosed[1], displayed=enclosed[2])
+    lies = _ON_ITS_FLOOR.fullmatch(text)
+    if lies and names_room(lies[1]):
+        return NamedPlace(lies[1], displayed=lies[2])
     text = _NOTHING_BEHIND.sub("", text)
     ends = [found.span() for found in _SEPARATOR.finditer(text)]
     spans = list(zip((0, *(end for _, end in ends)), (*(start for start, _ in ends), len(text)), strict=True))
@@ -186,10 +221,10 @@ def _patterns() -> tuple[re.Pattern[str], re.Pattern[str], re.Pattern[str]]:
     # 3号柜, 第2ケース: the number comes first.
     signs = any_of([*filter(UNPARTED.match, [*plain, *CASES]), "柜", "櫃"]).pattern
     ahead = rf"[第제]?[\d一二三四五六七八九十]{{1,4}}\s?[号號番번]?\s?(?:{signs})"
-    counted = rf"(?:{numbered}\.?\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}|{ahead})"
+    counted = rf"(?:{_NO_CASE}{numbered}\.?\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}|{ahead})"
     before = r"\s*(?:[^\W\d_]+[\s-]+){0,2}"
     return (
-        re.compile(rf"{before}(?:{counted}|{word}|case)\s*$", re.IGNORECASE),
-        re.compile(rf"{before}{counted}\s*$", re.IGNORECASE),
+        re.compile(rf"{_NO_CASE}{before}(?:{counted}|{word}|case)\s*$", re.IGNORECASE),
+        re.compile(rf"{_NO_CASE}{before}{counted}\s*$", re.IGNORECASE),
         re.compile(rf"{counted}(?!\w).*$", re.IGNORECASE | re.DOTALL),
     )

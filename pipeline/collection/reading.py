@@ -24,7 +24,7 @@ from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.naming import titled
 from pipeline.collection.opening import open_source
-from pipeline.collection.places import case_in, parted
+from pipeline.collection.places import case_in, located, parted
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.row_audit import RowAudit
 from pipeline.collection.source_audit import audit, judged, taken_away
@@ -436,7 +436,9 @@ class RowReader:
             remedy = "record its current location; until then it counts as not on display"
             if said is not False:  # what is not on display, as a flag says, may well have no place that is told
                 cells.problems.append(Problem("gallery", "the location is empty", remedy))
-        elif self._mapping.columns["gallery"].cases:
+        else:
+            gallery = located(gallery)
+        if gallery != NOWHERE and self._mapping.columns["gallery"].cases:
             gallery, values["case"], held = parted(gallery)
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), held)))
         if not values.get("case") and "case" not in self._mapping.columns:

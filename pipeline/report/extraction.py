@@ -7,7 +7,7 @@ from io import TextIOWrapper
 from typing import IO
 
 from pipeline.analysis.classify import WEIGHED, object_classes
-from pipeline.analysis.furniture import DAMPING, FREQUENCY, IN_THE_OPEN, LEVEL_ERROR, ON_WHEELS, WHAT_HANGS
+from pipeline.analysis.furniture import DAMPING, FREQUENCY, IN_NO_CASE, IN_THE_OPEN, LEVEL_ERROR, ON_WHEELS, WHAT_HANGS
 from pipeline.analysis.section import OF_CLASS
 from pipeline.analysis.sizes import SIZES
 from pipeline.analysis.usual import ON_ANY
@@ -136,6 +136,7 @@ def _of_assumptions() -> Iterator[str]:
         "the wall",
         "what stands",
         IN_THE_OPEN,
+        IN_NO_CASE,
         ON_WHEELS,
         *WHAT_HANGS.values(),
     )

@@ -44,6 +44,7 @@ _WALL_CASE = re.compile(
 """A case on or in a wall: what is in it does not hang on that."""
 _NUMBERED = re.compile(rf"(?<!\w)(?:{'|'.join(CASES)})\s?(?:no\.?|nr\.?|n°)?\s?\d", re.IGNORECASE)
 _ALONE = "judgement: a wall alone is what it hangs on"
+_UNCASED = "judgement: what is shown in the open is in no case"
 _ENCLOSED = (Furniture.SHOWCASE, Furniture.SHELF)
 
 _NEAR = 40
@@ -206,6 +207,8 @@ def told_by(text: str) -> HeldAs:
     if _NUMBERED.search(text) or any(row.furniture in _ENCLOSED for row in found):
         # "East, wall, case 3": what is in a case does not hang on the wall for a word alone.
         found = [row for row in found if row.source != _ALONE]
+    if any(row.source == _UNCASED for row in found):
+        found = [row for row in found if row.furniture not in _ENCLOSED]
     support = next((row.support for row in found if row.support is not None), None)
     if support is None and any(told.denies(text) for told in _rows()):
         return replace(_of(found), support=Support.FREESTANDING)
@@ -213,6 +216,18 @@ def told_by(text: str) -> HeldAs:
         # "On the wall over the sideboard": what hangs stands on nothing.
         found = [row for row in found if row.support in (None, support)]
     return _of(found)
+
+
+@lru_cache(maxsize=4096)
+def in_no_case(text: str) -> bool:
+    """Whether a text tells that a thing is shown in the open: "hors vitrine", "open display".
+
+    Parameters
+    ----------
+    text : str
+        In the museum's words.
+    """
+    return any(told.row.source == _UNCASED and told.says(text) for told in _rows())
 
 
 def _of(found: Sequence[HeldWords]) -> HeldAs:

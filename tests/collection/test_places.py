@@ -10,9 +10,9 @@ from pipeline.analysis.classify import classify
 from pipeline.collection.errors import MappingError
 from pipeline.collection.guess import guess
 from pipeline.collection.mapping import load_mapping
-from pipeline.collection.places import parted
+from pipeline.collection.places import located, parted
 from pipeline.collection.reading import read_items
-from pipeline.records import Furniture, Origin, Support
+from pipeline.records import Furniture, Item, Origin, Support
 
 
 @pytest.mark.parametrize(
@@ -27,7 +27,9 @@ from pipeline.records import Furniture, Origin, Support
      ("Gallery 207 - Display case A", "Gallery 207", "Display case A"), ("Vitrine 3", "Vitrine 3", "Vitrine 3"),
      ("Fossil room Case 2", "Fossil room", "Case 2"), ("Wing B Case 4", "Wing B", "Case 4"),
      ("Rittersaal Vitrine 4", "Rittersaal", "Vitrine 4"), ("Sala romana vetrina 3", "Sala romana", "vetrina 3"),
-     ("Wall case 3", "Wall case 3", "Wall case 3"), ("Sala 2 / Vit. 3", "Sala 2", "Vit. 3")],
+     ("Wall case 3", "Wall case 3", "Wall case 3"), ("Sala 2 / Vit. 3", "Sala 2", "Vit. 3"),
+     ("G69/dc13", "G69", "dc13"), ("On display (G12/dc3)", "G12", "dc3"),
+     ("On view at: Gallery 109, case 4", "Gallery 109", "case 4")],
 )  # fmt: skip
 def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
     assert parted(place) == (room, case, "")
@@ -36,7 +38,7 @@ def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
 @pytest.mark.parametrize(
     "place",
     ["", "Gallery 1", "Staircase", "Case Study House", "Bookcase Room", "The Shelf", "The Showcase", "Vitrine Gallery",
-     "Pedestal Hall", "Cabinet 3", "Kabinett 12", "G69/dc13", "Gallery 2, by the window", "Casement Hall, south",
+     "Pedestal Hall", "Cabinet 3", "Kabinett 12", "Second floor", "Ground Floor", "On display", "Gallery 2, by the window", "Casement Hall, south",
      "Main Hall (east)"],
 )  # fmt: skip
 def test_a_room_alone(place: str) -> None:
@@ -50,10 +52,35 @@ def test_a_room_alone(place: str) -> None:
      ("Atrium; hung overhead", "Atrium", "hung overhead"), ("Main Hall (suspended)", "Main Hall", "suspended"),
      ("Näyttely 3 (ripustettu kattoon)", "Näyttely 3", "ripustettu kattoon"),
      ("Зал 2, подвешен к потолку", "Зал 2", "подвешен к потолку"),
-     ("Sala 4, pod sufitem", "Sala 4", "pod sufitem"), ("Rum 2, hängande i taket", "Rum 2", "hängande i taket")],
+     ("Sala 4, pod sufitem", "Sala 4", "pod sufitem"), ("Rum 2, hängande i taket", "Rum 2", "hängande i taket"),
+     ("On display (G24/od)", "G24", "od"), ("Sculpture, room 21, case FS", "Sculpture, room 21", "case FS"),
+     ("Salle 348 - Salle des Verres, Hors vitrine", "Salle 348 - Salle des Verres", "Hors vitrine"),
+     ("Room 5, not in a case", "Room 5", "not in a case"), ("Library floor", "Library", "floor"),
+     ("Level 4, Passports, open display", "Level 4, Passports", "open display")],
 )  # fmt: skip
 def test_a_room_and_how_a_thing_is_held_there(place: str, room: str, displayed: str) -> None:
     assert parted(place) == (room, "", displayed)
+
+
+@pytest.mark.parametrize(
+    ("place", "where"),
+    [("Currently on view at: Getty Villa, Gallery 109", "Getty Villa, Gallery 109"), ("On display: Hall 3", "Hall 3"),
+     ("On display (G12/dc3)", "G12/dc3"), ("Gallery 4: Greek vases", "Gallery 4: Greek vases"),
+     ("Gallery 4 (east)", "Gallery 4 (east)"), ("On display", "On display")],
+)  # fmt: skip
+def test_that_a_thing_is_on_display_is_no_part_of_its_place(place: str, where: str) -> None:
+    assert located(place) == where
+
+
+@pytest.mark.parametrize(
+    ("name", "height_m", "furniture"),
+    [("commode", 0.87, Furniture.FLOOR), ("vase", 0.4, Furniture.PEDESTAL), ("statue", 1.9, Furniture.FLOOR)],
+)
+@pytest.mark.parametrize("displayed", ["Hors vitrine", "case FS", "open display", "außerhalb der Vitrine"])
+def test_what_is_in_no_case_stands_in_none(name: str, height_m: float, furniture: Furniture, displayed: str) -> None:
+    item = Item(object_number="1", gallery="Salle 1", object_name=name, height_m=height_m, displayed=displayed)
+    scene = classify(item)
+    assert (scene.support, scene.furniture) == (Support.FREESTANDING, furniture)
 
 
 EXPORT = """number,object,material,size,location

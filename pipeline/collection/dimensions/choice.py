@@ -91,6 +91,7 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     bases = [g for g in groups.values() if is_base(g[0].name)]
     if bases:
         out |= _base(max(bases, key=_size))
+        out = _at_its_feet(bases, out) | out
     mass = _mass(dimensions, chosen)
     if mass is not None:
         out["mass"] = mass
@@ -159,8 +160,12 @@ def _rank(group: list[DimensionPart], hung: bool) -> int:
     words = name.replace("/", " ").split()  # "image/plate" is an image, and no word that nobody knows
     if "sight" in group[0].qualifiers:
         return 6
+    if "without" in words[1:]:  # "Teil (ohne Rahmen)"
+        return 4
     if FRAMED.intersection(words):
         return 0 if hung else 3
+    if name == "net":  # what is left of it without lid, stand or mouldings
+        return 5
     if name == "with base" or (name.startswith("with ") and (DETAILS | _RAISING).intersection(words)):
         return 1
     if is_detail(name):
@@ -232,6 +237,18 @@ def _open_mouth(groups: Iterable[list[DimensionPart]], height: float) -> dict[st
     return {
         "diameter": Choice(part.value or 0.0, part.start, part.end, "diameter of its mouth, where a bowl is widest")
     }
+
+
+def _at_its_feet(bases: Iterable[list[DimensionPart]], out: dict[str, Choice]) -> dict[str, Choice]:
+    """Return the side of a foot where of a thing's two sides in plan only the other is said: "Depth: 62 cm feet"."""
+    if "height" not in out or "diameter" in out or ("width" in out) == ("depth" in out):
+        return {}
+    side = "depth" if "width" in out else "width"
+    said = [p for g in bases for p in g if p.dimension == side and p.value]
+    if not said:
+        return {}
+    part = max(said, key=lambda p: p.value or 0.0)
+    return {side: Choice(part.value or 0.0, part.start, part.end, f"{side} at its foot, for it has no other")}
 
 
 def _base(group: list[DimensionPart]) -> dict[str, Choice]:

@@ -18,6 +18,9 @@ LONGEST = 2000
 """Characters of a text that are read; what follows is noted, not read."""
 
 _SHOWN = re.compile(r"(?<![\d.,])\d+([.,])\d{1,2}(?![\d.,]|\s*/)")
+_THOUSAND, _LARGE = re.compile(r"\d\.\d{3}"), 50
+"""Millimetres with three digits behind a point, which are thousands beside others of this size: nobody measures what is
+as large to the micrometre (judgement)."""
 _POINTED = re.compile(r"\d{1,3}\.\d{3}")
 _ORDERS = {"": ("height", "width", "depth"), "length": ("width", "height", "depth")}
 _CONVENTION = "the order is taken as height x width x depth, the museums' convention; it is not written"
@@ -52,6 +55,21 @@ _DASHED = re.compile(r"(?<![^\W_])([^\W\d_]{1,2})-(?=\d)")
 _SENTENCE_END = re.compile(r"(?<=\d)\.(?=\s+[^\W\d_])")
 """A full stop behind a number: what a sentence ends with is no side of what the next one names, as in 1850. H 90."""
 _DASHED_SIDES = frozenset("hwldbt")
+_OVERALL = re.compile(r"\bO([HWLD])(?=\s?[:.]?\s?\d)")
+"""A label of the whole: OH: 38 in.; OW: 22 in.; OD: 17 in."""
+_PARTED = re.compile(r"(?<![\d.,])(\d{1,3}[.,])( )(\d)(?![\d.,/])")
+_PLAIN = r"\d+(?:[.,]\d+)?"
+_PARTED_RUN = re.compile(
+    r"(?:(?<=[^\W\d_])|(?<=[^\W\d_][.:=])|(?<=[^\W\d_][.:=] )|(?<=[^\W\d_] )|\A)"
+    rf"(?:{_PLAIN} ?[x×] ?){{0,2}}{_PARTED.pattern}"
+    rf"(?: ?[x×] ?(?:{_PARTED.pattern}|{_PLAIN})){{0,2}}(?= ?(?:cm|mm|m)\b)",
+    re.IGNORECASE,
+)
+"""Numbers with a blank behind the decimal mark, ahead of their unit: "H. 19, 5 cm", "19, 5 x 13, 7 cm"."""
+_ARTICLE = re.compile(r"\b(?:de|à) la\b", re.IGNORECASE)
+"""In "diamètre de la panse", where it is no label of a width."""
+_BOTTOM = re.compile(r"(\bdiam\w*\.? (?:del |di |al )?)fondo\b", re.IGNORECASE)
+"""The diameter of a bottom, which in Spanish is no depth: "diam. bocca 45 diam. fondo 30 cm"."""
 _APART = 10
 """How many times as long as another a side hardly is of which one unit alone is written (judgement)."""
 
@@ -111,6 +129,7 @@ def parse(
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
     head = _TWICE.sub(_blank, _QUALIFIED.sub(_unqualified, text[:LONGEST]))
+    head = _BOTTOM.sub(r"\1base ", _PARTED_RUN.sub(_together, _of_whole(_ARTICLE.sub(_blank, head))))
     head = _undashed(_LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, head)))
     if prose:
         head = _SENTENCE_END.sub(";", head)
@@ -145,7 +164,13 @@ def parse(
     for group in groups:
         _weighed(group, head, notes)
         for q in group.quantities:
-            if decimal == "," and _POINTED.fullmatch(q.word):
+            if decimal == "." and q.unit is not None and q.unit.name == "mm" and _THOUSAND.fullmatch(q.word):
+                beside = any(p.kind == "length" and p.den == 1 and p.num >= _LARGE for p in group.quantities)
+                q.num *= 1000 if beside else 1
+                message = f"{q.word} mm is read as {q.num / q.den:.10g}, its point as a mark of "
+                message += "thousands" if beside else "decimals"
+                notes.append(DimensionNote("ambiguous", message, q.start, q.end))
+            elif decimal == "," and _POINTED.fullmatch(q.word):
                 message = f"{q.word} is read as {q.num / q.den:.10g}, its point as a mark of thousands"
                 notes.append(DimensionNote("ambiguous", message, q.start, q.end))
     parts = tuple(
@@ -168,6 +193,20 @@ def _undashed(text: str) -> str:
     sides = [found[1].casefold() for found in _DASHED.finditer(text)]
     able = len(sides) > 1 and len(set(sides)) == len(sides) and _DASHED_SIDES.issuperset(sides)
     return _DASHED.sub(r"\1:", text) if able else text
+
+
+def _of_whole(text: str) -> str:
+    """Return a text with H for OH, where several sides are labelled so."""
+    sides = {found[1] for found in _OVERALL.finditer(text)}
+    return _OVERALL.sub(r" \1", text) if len(sides) > 1 and sides & {"H", "W"} else text
+
+
+def _together(found: re.Match[str]) -> str:
+    """Return "19, 5" as "19,5 ", of as many characters; behind the name of a part it is that part's number."""
+    before = found.string[: found.start()].split()[-1:]
+    if before and meanings().get(before[0].casefold(), ("", ""))[0] == "part":
+        return found[0]
+    return _PARTED.sub(r"\1\3\2", found[0])
 
 
 def _blank(found: re.Match[str]) -> str:

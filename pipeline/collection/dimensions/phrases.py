@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import permutations
 
 from pipeline.collection.dimensions.tokens import (
     BREAK,
@@ -22,6 +23,25 @@ from pipeline.collection.dimensions.tokens import (
 )
 
 _GLUE = frozenset(("", "-", ".", "&", "'", "’", "/", "-.", "+"))
+
+_LEGENDS = {
+    "".join(order): tuple(sides[letter] for letter in order)
+    for sides in (
+        {"h": "height", "w": "width", "d": "depth"},
+        {"h": "height", "w": "width", "l": "length"},
+        {"h": "height", "b": "width", "t": "depth"},
+        {"h": "height", "b": "width", "l": "length"},
+        {"h": "height", "l": "width", "p": "depth"},
+    )
+    for order in permutations(sides)
+}
+"""Sides by their first letters, written together: "87 x 54 x 57 cm (hwd)"."""
+
+_ON = frozenset({"on", "sur", "su", "sobre", "op", "på", "na"})
+"""Ahead of a base: "62 cm on socle" is the height with it."""
+_BASES = (("part", "base"), ("part", "pedestal"))
+_BODIES = frozenset({"body", "belly", "bowl", "shoulder", "shoulders", "waist", "cuerpo", "corpo", "corps", "körper"})
+"""Where a vessel is widest, of which a diameter is the thing's own."""
 
 _IN_POLISH = frozenset({"ramie", "oprawie"})
 """Words behind a Polish "w" that is no width: "w ramie", in its frame."""
@@ -87,6 +107,12 @@ def is_label_letter(tokens: list[Token], at: int, text: str) -> bool:
     return opened and (following == COMMA or (following == CLOSE and tokens[at + 2].type in (COLON, DOT)))
 
 
+def _dimension(tokens: list[Token], at: int, indices: list[int]) -> str:
+    """Return the dimension that a token names, if it is one of some; else ""."""
+    kind, meaning = tokens[at].meaning or ("", "")
+    return meaning if kind == "dimension" and at in indices else ""
+
+
 def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
     """Return what some tokens say together.
 
@@ -108,12 +134,20 @@ def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
     if not indices:
         return out
     kept: list[tuple[str, Token]] = []
-    joins = 0
+    joins = legends = 0
     for at in indices:
         token = tokens[at]
         kind, meaning = token.meaning or ("", "")
-        if token.word == "w" and at + 1 in indices and tokens[at + 1].word in _IN_POLISH:
+        legend = _LEGENDS.get(token.word, ()) if token.type == WORD else ()
+        if legend:
+            out.dimensions += legend
+            legends += 1
+        elif token.word == "w" and at + 1 in indices and tokens[at + 1].word in _IN_POLISH:
             pass
+        elif token.word in _ON and at + 1 in indices and tokens[at + 1].meaning in _BASES:
+            kept.append(("with", token))
+        elif token.word in _BODIES and "diameter" in (*out.dimensions[-1:], _dimension(tokens, at + 1, indices)):
+            out.qualifiers.add("maximum")
         elif token.type == DIMENSION:
             if is_label_letter(tokens, at, text):
                 kept.append((token.word, token))
@@ -135,7 +169,7 @@ def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
         elif token.type in (NUMBER, DOTTED, TIME, WORD) or (token.type == UNIT and token.word.isalpha()):
             kept.append((token.word.strip(".,") or token.word, token))
             out.known = False
-    out.joined = joins > 0 and len(out.dimensions) > 1
+    out.joined = joins + legends > 0 and len(out.dimensions) > 1
     if out.joined:
         kept = [(word, token) for word, token in kept if token.type != JOIN]
     while kept and kept[0][1].type == JOIN:

@@ -423,7 +423,9 @@ class Reader:
             group = self._split(group, phrase)
         stands = phrase.known or name.startswith(_BEHIND)
         stands = stands or ("each" in phrase.qualifiers and not group.words)
-        if name and stands and group.name == "overall":
+        if name and stands and (group.name != "overall" or name.startswith(_BEHIND)) and self._again(group, phrase):
+            use = True
+        elif name and stands and group.name == "overall":
             group.name = name
             group.words = self.text[phrase.start : phrase.end].strip(" \t:,.()")
             group.aside = group.aside or (len(group.quantities) == 1 and is_opening(name))
@@ -437,6 +439,18 @@ class Reader:
             group.qualifiers |= phrase.qualifiers
             use = True
         return use
+
+    def _again(self, group: Group, phrase: Phrase) -> bool:
+        """Part the last number from a group where a remark names it otherwise: "H: 30 cm, 36 cm (with base)"."""
+        *before, last = group.quantities
+        if last.dimension or len(before) != 1 or before[0].run == last.run or not before[0].dimension:
+            return False
+        last.dimension = before[0].dimension
+        group.quantities = before
+        words = self.text[phrase.start : phrase.end].strip(" \t:,.()")
+        self.current = Group(phrase.name, words, set(phrase.qualifiers), [last], aside=True)
+        self.groups.append(self.current)
+        return True
 
     def _split(self, group: Group, phrase: Phrase) -> Group:
         """Give the last number of a group one of its own: in "H. 12 cm, Diam. 8 cm (rim)" only it is the rim's."""

@@ -254,6 +254,8 @@ def _label_behind(tokens: list[Token], at: int, quantity: DimensionQuantity, tex
     behind = place + 1
     if tokens[behind].type == DOT:
         behind += 1
+    if tokens[behind].type == JOIN and tokens[behind + 1].type == DIMENSION and not _begins(tokens, behind + 1):
+        return at  # "34 x 21 x 18 HxWxD in.": a legend of all of them
     if bracket:
         if tokens[behind].type != CLOSE:
             return at

@@ -23,6 +23,8 @@ from pipeline.collection.dimensions.tokens import (
 
 _NAMES = frozenset({"mm", "cm", "dm", "m", "g", "kg"})
 """Units that are written before numbers: inches never are, and "in" is a word."""
+_SPELLED = frozenset({"inches", "inch", "zoll"})
+"""Words that are nothing else, behind a legend or in brackets: "34 x 21 x 18 (HxWxD) (inches)"."""
 _ANNOUNCING = frozenset({"en", "in", "misu"})
 _UNIT_NAMES = frozenset(
     {"misu", "unità", "unit", "units", "einheit", "unité", "unidad", "unidade", "eenheid", "μοναδα"}
@@ -86,8 +88,13 @@ def units_behind(tokens: list[Token]) -> list[Token]:
 def _is_ahead(tokens: list[Token], at: int, moved: dict[int, LexiconUnit]) -> bool:
     """Whether a unit belongs to no number before it, and there is one that it may belong to."""
     unit = tokens[at].unit
-    if unit is None or unit.name not in _NAMES or not tokens[at].word.strip("."):
+    named = unit is not None and (unit.name in _NAMES or tokens[at].word in _SPELLED)
+    if unit is None or not named or not tokens[at].word.strip("."):
         return False
+    legend = at - 1 if at and tokens[at - 1].type == CLOSE else at
+    if legend > 1 and tokens[legend - 1].type == DIMENSION and tokens[legend - 2].type == JOIN:
+        # "34 x 21 x 18 HxWxD cm"
+        return tokens[_dotted(tokens, at)].type in (END, BREAK)
     back = at - 1
     while back >= 0 and tokens[back].type in (DOT, OPEN, DIMENSION, CLOSE):
         back -= 1
@@ -104,7 +111,9 @@ def _is_ahead(tokens: list[Token], at: int, moved: dict[int, LexiconUnit]) -> bo
         return True
     if at > 1 and tokens[at - 1].type == OPEN and tokens[_dotted(tokens, at)].type == CLOSE:
         # "(g)" alone numbers a component.
-        return unit.name in ("mm", "cm", "dm", "kg") or tokens[at - 2].type == DIMENSION
+        return unit.name in ("mm", "cm", "dm", "kg", "in") or tokens[at - 2].type == DIMENSION
+    if unit.name not in _NAMES:
+        return False
     behind = _dotted(tokens, at)
     if tokens[behind].type == COLON:
         behind += 1
