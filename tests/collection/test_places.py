@@ -38,7 +38,8 @@ def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
 @pytest.mark.parametrize(
     "place",
     ["", "Gallery 1", "Staircase", "Case Study House", "Bookcase Room", "The Shelf", "The Showcase", "Vitrine Gallery",
-     "Pedestal Hall", "Cabinet 3", "Kabinett 12", "Second floor", "Ground Floor", "On display", "Gallery 2, by the window", "Casement Hall, south",
+     "Pedestal Hall", "Cabinet 3", "Kabinett 12", "Second floor", "Ground Floor", "On display",
+     "Gallery 2, by the window", "Casement Hall, south",
      "Main Hall (east)"],
 )  # fmt: skip
 def test_a_room_alone(place: str) -> None:

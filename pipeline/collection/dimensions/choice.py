@@ -160,9 +160,7 @@ def _rank(group: list[DimensionPart], hung: bool) -> int:
     words = name.replace("/", " ").split()  # "image/plate" is an image, and no word that nobody knows
     if "sight" in group[0].qualifiers:
         return 6
-    if "without" in words[1:]:  # "Teil (ohne Rahmen)"
-        return 4
-    if FRAMED.intersection(words):
+    if FRAMED.intersection(words) and "without" not in words:  # "Teil (ohne Rahmen)" is no frame
         return 0 if hung else 3
     if name == "net":  # what is left of it without lid, stand or mouldings
         return 5
@@ -244,7 +242,7 @@ def _at_its_feet(bases: Iterable[list[DimensionPart]], out: dict[str, Choice]) -
     if "height" not in out or "diameter" in out or ("width" in out) == ("depth" in out):
         return {}
     side = "depth" if "width" in out else "width"
-    said = [p for g in bases for p in g if p.dimension == side and p.value]
+    said = [p for g in bases for p in g if len(g) == 1 and p.dimension == side and p.value]
     if not said:
         return {}
     part = max(said, key=lambda p: p.value or 0.0)

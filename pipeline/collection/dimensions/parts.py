@@ -50,6 +50,6 @@ def is_detail(name: str) -> bool:
     words = name.split()
     if is_bore(name):
         return True
-    if len(words) > _SENTENCE:
+    if len(words) > _SENTENCE or "without" in words:  # "net dimensions, without lid" are no lid's
         return False
     return not name.startswith(_WHOLE) and (name == _HOLLOW or bool(DETAILS.intersection(words)))

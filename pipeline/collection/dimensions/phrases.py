@@ -38,7 +38,7 @@ _LEGENDS = {
 """Sides by their first letters, written together: "87 x 54 x 57 cm (hwd)"."""
 
 _ON = frozenset({"on", "sur", "su", "sobre", "op", "på", "na"})
-"""Ahead of a base: "62 cm on socle" is the height with it."""
+"""Ahead of a base, behind a number: "62 cm on socle" is the height with it."""
 _BASES = (("part", "base"), ("part", "pedestal"))
 _BODIES = frozenset({"body", "belly", "bowl", "shoulder", "shoulders", "waist", "cuerpo", "corpo", "corps", "körper"})
 """Where a vessel is widest, of which a diameter is the thing's own."""
@@ -63,6 +63,8 @@ class Phrase:
         They are joined by "x", as in "height x width x depth".
     qualifiers : set of str
         As of `result.DimensionPart`.
+    on : bool
+        On a base, as what was measured before stands: "62 cm on socle".
     start, end : int
         The characters of the text that hold it.
     """
@@ -72,6 +74,7 @@ class Phrase:
     dimensions: list[str] = field(default_factory=list)
     joined: bool = False
     qualifiers: set[str] = field(default_factory=set)
+    on: bool = False
     start: int = 0
     end: int = 0
 
@@ -145,7 +148,7 @@ def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
         elif token.word == "w" and at + 1 in indices and tokens[at + 1].word in _IN_POLISH:
             pass
         elif token.word in _ON and at + 1 in indices and tokens[at + 1].meaning in _BASES:
-            kept.append(("with", token))
+            out.on = True
         elif token.word in _BODIES and "diameter" in (*out.dimensions[-1:], _dimension(tokens, at + 1, indices)):
             out.qualifiers.add("maximum")
         elif token.type == DIMENSION:

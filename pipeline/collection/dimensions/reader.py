@@ -417,7 +417,7 @@ class Reader:
                 run[-1].dimension = phrase.dimensions[-1]
             use = True
         name = phrase.name
-        if name.endswith(" base") and not phrase.dimensions and not name.startswith("with"):
+        if phrase.on or (name.endswith(" base") and not phrase.dimensions and not name.startswith("with")):
             name = "with base"  # "on wooden base" without numbers of its own
         if phrase.known and (is_base(name) or is_detail(name)):
             group = self._split(group, phrase)
