@@ -120,6 +120,7 @@ SHAPES: Mapping[str, Callable[[Item], bool]] = {
     "panel": _panel,
     "slab": _slab,
     "thin": _thin,
+    "round": lambda item: not _slab(item) and not _thin(item),
     "tall": _tall,
     "low": _low,
     "deep": _deep,

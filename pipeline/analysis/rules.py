@@ -30,6 +30,7 @@ from pipeline.analysis.rule_table import (
 )
 from pipeline.records import Item
 from pipeline.tables.assumed import READ
+from pipeline.tables.material_words import begins_with_material
 
 _INVERTED = re.compile(r"\s*((?:[^\W\d_]|[ '-])+?)\s*,\s*((?:[^\W\d_]|[ '-])+?)\s*")
 """What lists of names put behind what it is an own kind of: Desk, Drop-front; Lamp, Hanging."""
@@ -153,11 +154,23 @@ class Readings:
 _TECHNIQUE = re.compile(r"(.{3,120}?)[,;]\s+([^,;]{3,60}(?:,\s[^,;]{3,40})?)\s*\.?\s*", re.DOTALL)
 
 
+_CAPTION = re.compile(
+    r".{3,200}?[,;]\s+(?:c\.?|ca\.?|circa|about|um|vers)?\s*"
+    r"(?:\d{3,4}(?:\s?[-\u2013/]\s?\d{2,4})?s?|\d{1,2}(?:st|nd|rd|th)\s(?:c\.|cent\.|century)(?:\s?BCE?|\s?CE)?)"
+    r"(?:\s?(?:BCE?|CE|AD))?[,;.]\s+([^\d]{3,120}?)\s*\.?\s*",
+    re.DOTALL,
+)
+"""A caption with its medium behind the date: "Barye, Lion Crushing a Serpent, 1832, bronze"."""
+
+
 def _with_technique(item: Item) -> Item:
-    """Return a record without a medium whose name or title ends with that of a picture: "Madonna, oil on panel"."""
+    """Return a record without a medium whose name or title ends with one: "Madonna, oil on panel", or as a caption."""
     if item.medium or item.material:
         return item
     for field in ("object_name", "title"):
+        caption = _CAPTION.fullmatch(getattr(item, field)[:READ])
+        if caption and begins_with_material(caption[1]):
+            return replace(item, medium=caption[1])
         found = _TECHNIQUE.fullmatch(getattr(item, field)[:READ])
         if found and any(rule.object_class in PICTURES for rule in _made(rules(), stuff("", found[2]))):
             return replace(item, medium=found[2])
@@ -347,10 +360,22 @@ def _headed(item: Item, of: RuleTable) -> RuleMatch | None:
     return None
 
 
+_DOING = re.compile(
+    r"(?<=\w\w)\s(?:\w{2,}ing\s(?:a|an|the|his|her|its|their|two|three)"
+    r"|(?!enfant|elephant|geant|diamant|volant|croissant|mendiant|etudiant|marchand)\w{3,}ant\s(?:une?|l[ea]s?|l|son|sa|ses|des|deux)"
+    r"|che\s\w{2,}\s(?:un|una|il|lo|la|l|i|gli|le)"
+    r"|(?:\w{2,}(?:ando|endo|indo)|que\s\w{2,})\s(?:una?|uno|uma?|el|la|los|las|sus?|o|a|seu|sua|il|lo|l|gli|le))\b"
+)
+"""What somebody does, with what is no name of the thing: "Woman holding a vase", "Venus removing her sandal"."""
+
+
 @lru_cache(maxsize=16384)
 def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     """Return the known words and *endings of an object name or title, the likeliest name of the thing first."""
     folded = _plain(text)
+    doing = _DOING.search(folded)
+    if doing is not None:
+        folded = folded[: doing.start()]
     # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
     start = of.spanning.match(folded) if of.spanning is not None else None
     kind = _KIND.search(folded)

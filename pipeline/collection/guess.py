@@ -436,6 +436,8 @@ def _chosen(
     number = found.get("object_number")
     if number is None:
         found["object_number"] = number = unique_in(name, columns, found)
+        for field in [field for field, column in found.items() if column is number and field != "object_number"]:
+            del found[field]  # "Object" that numbers them names nothing
         told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
         texts = texts_among(columns, found.values())
         free = [one for one in columns if one is number or (one not in found.values() and one not in texts)]

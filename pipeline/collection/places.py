@@ -9,7 +9,7 @@ from pipeline.records import Furniture
 from pipeline.tables.held_rows import CASES, hangs_above, told_by, words_for
 from pipeline.tables.rows import UNPARTED, any_of
 
-_SEPARATOR = re.compile(r"\s*[,;/>|，、；]\s*|:\s+|\s+[-–—]\s+")
+_SEPARATOR = re.compile(r"\s*(?:[,;>|，、；]|(?<!\bw)/)\s*|:\s+|\s+[-–—]\s+")
 LONGEST = 300
 """Characters beyond which a text names no place that could be parted."""
 
@@ -17,8 +17,12 @@ _ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
 _SIGN = r"(?:[a-z]{0,3}\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS, MW4."""
 
-_ON_ITS_FLOOR = re.compile(r"(\w[\w' ]*\w)(?<!\bon)(?<!\bthe) (floor)", re.IGNORECASE)
-"""What lies there: "Library floor", and no storey, "Second floor"."""
+_SIDE_OF = re.compile(
+    r"(\w[\w' ]*\w)(?<!\bon)(?<!\bthe)(?<!\bof) (floor|wall|ceiling|Boden|Wand|Decke|sol|mur|plafond|pavimento|parete"
+    r"|soffitto|suelo|pared|techo|vloer|muur)",
+    re.IGNORECASE,
+)
+"""The floor, wall or ceiling of a room, where a thing lies or hangs: "Library floor", and no storey, "Second floor"."""
 _NOTHING_BEHIND = re.compile(r"\s*[,;/>|]\s*[-–—.]*\s*$")
 """What stands for a case that a place has not: "Gartensaal / –"."""
 _OF_WALLS = re.compile(
@@ -130,7 +134,7 @@ def parted(text: str) -> NamedPlace:
     enclosed = _ENCLOSED.fullmatch(text)
     if enclosed and _tells(enclosed[2]):
         return NamedPlace(enclosed[1], displayed=enclosed[2])
-    lies = _ON_ITS_FLOOR.fullmatch(text)
+    lies = _SIDE_OF.fullmatch(text)
     if lies and names_room(lies[1]):
         return NamedPlace(lies[1], displayed=lies[2])
     text = _NOTHING_BEHIND.sub("", text)

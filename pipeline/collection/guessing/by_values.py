@@ -153,13 +153,14 @@ def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column])
     if able:
         fields = {id(column) for column in found.values()}
 
-        def unlike(one: Column) -> tuple[bool, bool, bool, bool, float, float]:
+        def unlike(one: Column) -> tuple[bool, bool, bool, bool, bool, float, float]:
             sentences = one.prose and sum(" " in text for text in one.filled) > _MOSTLY * len(one.filled)
             dated = _dated(one) >= _MOSTLY
             number = one.numbering and not dated
             return (
                 one.dimensional > _MOSTLY or (called(one.name, TEXTS) and one.sized > _MOSTLY),
                 sentences or dated,
+                not _coded(one),
                 id(one) in fields,
                 not number,
                 -round(accessions(one), 1),
@@ -172,6 +173,14 @@ def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column])
         f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "
         "object_number=COLUMN; or where the names of the columns stand: --choose header_row=NUMBER"
     )
+
+
+_CODE = re.compile(r"[^\W\d_]{1,4}[ .-]?\d{1,6}[a-z]?")
+
+
+def _coded(column: Column) -> bool:
+    """Whether all that a column of names of objects holds is letters and a number: A1, A2, A3 under "Object"."""
+    return called(column.name, "object_name") and all(_CODE.fullmatch(text.strip()) for text in column.filled)
 
 
 def perhaps_sizes(columns: Sequence[Column]) -> str:

@@ -12,6 +12,7 @@ from statistics import median
 from pipeline.collection.cells import unspaced
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
+from pipeline.collection.guessing.frames import frame_counts
 from pipeline.collection.guessing.names import (
     DESCRIPTION,
     LENGTH,
@@ -352,13 +353,14 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
     Returns
     -------
     list of Column
-        In the order of the source.
+        In the order of the source, but that of sizes with frames first.
     """
     free = [c for c in untaken(columns, used) if c.name != OTHER and not c.of_machine]
     so_called = [c for c in free if called(c.name, TEXTS) and c.sized > 0.2]
     words = [c for c in free if c.name.rpartition(".")[2] == IN_WORDS and c.filled]
     if so_called or words:
-        return so_called or words
+        # With its frame a picture hangs: what such a column leaves empty is told by another.
+        return sorted(so_called, key=lambda column: frame_counts(column.name) is not True) or words
     # "42.2 cm" of a column of lengths would be read as a number without a label, and so as a height.
     free = [column for column in free if not is_length(column.name)]
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]

@@ -40,3 +40,11 @@ def without_frame(name: str) -> tuple[str, bool] | None:
             rest = f"{name[: found.start()]} {name[found.end() :]}".strip(" ()[],_-.")
             return (_LETTERS.get(rest.casefold(), rest), framed) if rest else None
     return None
+
+
+def frame_counts(name: str) -> bool | None:
+    """Return whether sizes of a column are with the frame; None where its name says nothing of that.
+
+    name : of a column: "Framed (cm)"
+    """
+    return False if _UNFRAMED.search(name) else True if _FRAMED.search(name) else None

@@ -57,6 +57,9 @@ _WORDS = frozenset({"m", "g", "in"})
 _ENDS = frozenset({"mm", "cm", "m", "in", "ft", "kg", "g", "gr", "lb", "lbs", "oz"})
 """What is a unit at the end of a head, of all short Latin words."""
 
+_SPELLED = 3
+"""Letters of a word that is no label."""
+
 LONGEST = 200
 """Characters of a head beyond which it is none, and nothing is looked for in it."""
 
@@ -88,7 +91,13 @@ def told_unit(name: str) -> tuple[str, str | None]:
 
 
 def _before(name: str, found: re.Match[str]) -> str:
-    """Return what stands before a unit, its opening bracket too where that holds more."""
+    """Return what stands before a unit, its opening bracket too where that holds more.
+
+    A W is a width, "W mm", "Base W mm", but for heads in capitals: "WYSOKOŚĆ W CM".
+    """
+    ahead, by = name[: found.end("before")].rstrip(" _,;:/\n\t"), (found["by"] or "").strip()
+    if len(by) == 1 and by.isupper() and not (len(ahead) >= _SPELLED and ahead[-_SPELLED:].isupper()):
+        return f"{ahead} {by}".strip()
     return name[: found.end("before")].rstrip(" _,;:/\n\t")
 
 
