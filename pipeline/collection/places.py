@@ -105,6 +105,13 @@ def located(text: str) -> str:
     return found[2] or found[3] if found and says_shown(found[1]) else text
 
 
+_CASE_FIRST = re.compile(
+    rf"(\w{{3,20}})\s+((?!(?:gallery|hall|room|court|atrium|lobby|wing|pavilion)\b){ROOM.pattern}(?:\s+\w{{1,4}})?)",
+    re.IGNORECASE,
+)
+"""What a thing stands in or hangs on ahead of its room: "Vitrine Hörsaal", but "Vitrine Gallery" is a room."""
+
+
 class NamedPlace(NamedTuple):
     """What a place names: a room, a case, plinth or shelf in it, how a thing is held there; "" for what it does not."""
 
@@ -134,6 +141,11 @@ def parted(text: str) -> NamedPlace:
     enclosed = _ENCLOSED.fullmatch(text)
     if enclosed and _tells(enclosed[2]):
         return NamedPlace(enclosed[1], displayed=enclosed[2])
+    first = _CASE_FIRST.fullmatch(text)
+    if first and _SIDE_OF.fullmatch(f"in room {first[1]}"):
+        return NamedPlace(first[2], displayed=first[1])
+    if first and _patterns()[0].fullmatch(first[1]):
+        return NamedPlace(first[2], first[1])
     lies = _SIDE_OF.fullmatch(text)
     if lies and names_room(lies[1]):
         return NamedPlace(lies[1], displayed=lies[2])

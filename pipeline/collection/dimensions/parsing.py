@@ -59,6 +59,7 @@ _OVERALL = re.compile(r"\bO([HWLD])(?=\s?[:.]?\s?\d)")
 """A label of the whole: OH: 38 in.; OW: 22 in.; OD: 17 in."""
 _PARTED = re.compile(r"(?<![\d.,])(\d{1,3}[.,])( )(\d)(?![\d.,/])")
 _PLAIN = r"\d+(?:[.,]\d+)?"
+_ONLY_STROKES = re.compile(rf"\s*{_PLAIN}(?:\s*/\s*{_PLAIN}){{1,2}}\s*")
 _PARTED_RUN = re.compile(
     r"(?:(?<=[^\W\d_])|(?<=[^\W\d_][.:=])|(?<=[^\W\d_][.:=] )|(?<=[^\W\d_] )|\A)"
     rf"(?:{_PLAIN} ?[x×] ?){{0,2}}{_PARTED.pattern}"
@@ -128,6 +129,8 @@ def parse(
         raise InputError(f'decimal must be "." or ",", not {decimal!r}')
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
+    if len(order) > 1 and len(re.findall(_PLAIN, text)) == len(order) and _ONLY_STROKES.fullmatch(text):
+        text = text.replace("/", "x")  # "165/230/170" under "Höhe/Breite/Tiefe"
     head = _TWICE.sub(_blank, _QUALIFIED.sub(_unqualified, text[:LONGEST]))
     head = _BOTTOM.sub(r"\1base ", _PARTED_RUN.sub(_together, _of_whole(_ARTICLE.sub(_blank, head))))
     head = _undashed(_LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, head)))

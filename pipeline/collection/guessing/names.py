@@ -81,6 +81,9 @@ LEGEND = re.compile(
     re.IGNORECASE,
 )
 """What the head of a column says of the order: L x B x H, alto x ancho x fondo."""
+_MASSES = frozenset({"masse"})
+STROKES = re.compile(r"[^\W\d_]{3,}\s*/\s*[^\W\d_]{3,}(?:\s*/\s*[^\W\d_]{3,})?")
+"""Words that strokes part, which may be sides: Höhe/Breite/Tiefe."""
 _OTHER = re.compile(r"[^\w]+|_")
 _FEWEST = 3
 """Letters of a name that a point cuts short."""
@@ -269,8 +272,13 @@ def named(name: str) -> ColumnMeaning | None:
         return _names()[plain(path[-2])]  # what a place is called, and no thing: "Raum.bezeichnung"
     if plain(name) != _NUMBER or len(_OTHER.sub("", name)) == 1:
         forms = [form for form in forms if form != _NUMBER]  # the N of "Y/N"
+    if _by_strokes(name):
+        return ColumnMeaning(TEXTS, _WEAK)
+    unit = unit_in(name)[1]
     for form in forms:
         found = _names().get(form)
+        if found is not None and found.field == TEXTS and form in _MASSES and unit in units_of("mass_kg"):
+            return _names()["mass"]  # "Masse (g)", which without a unit are the sizes, as the Swiss write them
         # What stands below a description is none: "Description.Material.Keyword".
         if found is not None and not (found.field == DESCRIPTION and form in above):
             return found
@@ -284,6 +292,19 @@ def named(name: str) -> ColumnMeaning | None:
     rest = unit_in(name)[0].strip(" ()")
     legend = ColumnMeaning(TEXTS, _WEAK) if LEGEND.fullmatch(rest) and plain(rest)[:3] != "max" else None
     return legend or _cut(name) or _beside_frame(name) or _within(name)
+
+
+def _by_strokes(name: str) -> bool:
+    """Whether strokes part the sides that a column tells at once, and not the names of one in two languages."""
+    rest = unit_in(name)[0].strip(" ()")
+    if not STROKES.fullmatch(rest):
+        return False
+    said = [_names().get(plain(word)) for word in rest.split("/")]
+    sides = {one.field for one in said if one is not None}
+    return len(sides) == len(said) and "height_m" in sides and sides <= {*_UPRIGHT_AND_PLAN, LENGTH}
+
+
+_UPRIGHT_AND_PLAN = ("height_m", "width_m", "depth_m", "diameter_m")
 
 
 def _beside_frame(name: str) -> ColumnMeaning | None:

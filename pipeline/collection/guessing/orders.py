@@ -17,7 +17,7 @@ from pipeline.collection.dimensions.choice import USUAL
 from pipeline.collection.dimensions.result import DimensionPart
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
-from pipeline.collection.guessing.names import LEGEND, unit_in
+from pipeline.collection.guessing.names import LEGEND, STROKES, unit_in
 from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.guessing.questions import asked_unit
 from pipeline.collection.record import units_of
@@ -107,7 +107,7 @@ def order_of(columns: Sequence[Column]) -> tuple[tuple[str, ...], str]:
         () for height, width, depth; "" where there is nothing to say.
     """
     for column in columns:
-        legend = LEGEND.search(column.name)
+        legend = LEGEND.search(column.name) or STROKES.search(column.name)
         order = () if legend is None else _labelled(f"{legend[0]}: {' x '.join('123'[: _many(legend[0])])} cm")
         if len(order) > 1:
             said = f"sizes without labels are {' x '.join(order)}, as the head of {column.name!r} says"
