@@ -72,13 +72,15 @@ def as_displayed(item: Item) -> Item:
     if not item.displayed.strip():
         return item
     told = told_by(item.displayed)
+    # A stand within a case is no pedestal of its own: "case 3", fixed to its base.
+    within = told.furniture is Furniture.PEDESTAL and _names_case(item)
     # Of what is recorded to hang or to stand the words for the other are about something else.
     stands = item.support is not None and item.support not in _ABOVE
     return replace(
         item,
         support=item.support or (None if item.hanging is not None else told.support),
         hanging=item.hanging or (None if stands else told.hanging),
-        furniture=item.furniture or told.furniture,
+        furniture=item.furniture or (None if within else told.furniture),
         furniture_anchorage=item.furniture_anchorage or told.anchorage,
         surface_material=item.surface_material or " and ".join(surfaces_in(item.displayed)),
     )

@@ -12,7 +12,14 @@ import tomlkit
 from pipeline.collection.cells import parting_mark
 from pipeline.collection.display_words import says_away
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.guessing.by_values import by_values, perhaps_sizes, repeated_in, second_number, unique_in
+from pipeline.collection.guessing.by_values import (
+    by_values,
+    is_coded,
+    perhaps_sizes,
+    repeated_in,
+    second_number,
+    unique_in,
+)
 from pipeline.collection.guessing.columns import (
     Column,
     candidates,
@@ -436,8 +443,8 @@ def _chosen(
     number = found.get("object_number")
     if number is None:
         found["object_number"] = number = unique_in(name, columns, found)
-        for field in [field for field, column in found.items() if column is number and field != "object_number"]:
-            del found[field]  # "Object" that numbers them names nothing
+        if found.get("object_name") is number and is_coded(number):
+            del found["object_name"]  # "Object" that numbers things names none
         told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
         texts = texts_among(columns, found.values())
         free = [one for one in columns if one is number or (one not in found.values() and one not in texts)]

@@ -26,7 +26,7 @@ _SIDE_OF = re.compile(
 _NOTHING_BEHIND = re.compile(r"\s*[,;/>|]\s*[-–—.]*\s*$")
 """What stands for a case that a place has not: "Gartensaal / –"."""
 _OF_WALLS = re.compile(
-    r"(?:Wand|wall|mur|parete|pared|parede|muur|ściana|stěna|стена|τοίχος|duvar|vägg|væg|seinä|perete|zid)\s+"
+    r"(?:Wand|wall|mur|muro|parete|pared|parede|muur|ściana|stěna|стена|τοίχος|duvar|vägg|væg|seinä|perete|zid)\s+"
     r"(?:[nsewo]|nord|süd|ost|west|sud|est|ouest|ovest|norte|sur|este|oeste|noord|zuid|oost|\d{1,2}|[a-d])"
     r"|(?:north|south|east|west|left|right|back|end|[nsew])\.? wall|(?:Nord|Süd|Ost|West|Stirn|Längs|Rück)wand",
     re.IGNORECASE,

@@ -275,7 +275,8 @@ def _is_own(group: Group) -> bool:
 def _share_last(groups: list[Group], notes: list[DimensionNote]) -> None:
     """Carry the only unit of a text, behind its last number, back to the labelled numbers of all its parts."""
     every = sorted((q for group in groups for q in group.quantities), key=lambda q: q.start)
-    if len(groups) < 2 or every[-1].kind != "length" or any(q.unit is not None for q in every[:-1]):
+    before = [q for q in every if q.run != every[-1].run]
+    if len(groups) < 2 or every[-1].kind != "length" or any(q.unit is not None for q in before):
         return
     for q in every[:-1]:
         if q.dimension not in ("", "weight"):

@@ -160,7 +160,7 @@ def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column])
             return (
                 one.dimensional > _MOSTLY or (called(one.name, TEXTS) and one.sized > _MOSTLY),
                 sentences or dated,
-                not _coded(one),
+                not is_coded(one),
                 id(one) in fields,
                 not number,
                 -round(accessions(one), 1),
@@ -178,8 +178,11 @@ def unique_in(name: str, columns: Sequence[Column], found: Mapping[str, Column])
 _CODE = re.compile(r"[^\W\d_]{1,4}[ .-]?\d{1,6}[a-z]?")
 
 
-def _coded(column: Column) -> bool:
-    """Whether all that a column of names of objects holds is letters and a number: A1, A2, A3 under "Object"."""
+def is_coded(column: Column) -> bool:
+    """Say whether all that a column of names of objects holds is letters and a number: A1, A2, A3 under "Object".
+
+    column : of the source
+    """
     return called(column.name, "object_name") and all(_CODE.fullmatch(text.strip()) for text in column.filled)
 
 

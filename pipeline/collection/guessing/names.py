@@ -81,6 +81,12 @@ LEGEND = re.compile(
     re.IGNORECASE,
 )
 """What the head of a column says of the order: L x B x H, alto x ancho x fondo."""
+_ABOUT = re.compile(
+    r"(?<!\w)(?:approx(?:imate(?:ly)?)?|aprox(?:imad[oa])?|approssimativ[oa]|environ|env|circa|ca|est(?:imated)?|ungefähr"
+    r"|geschätzt|stimat[oa]|estimad[oa]|estimé)(?!\w)\.?",
+    re.IGNORECASE,
+)
+"""What a head says of how well all of it is known."""
 _MASSES = frozenset({"masse"})
 STROKES = re.compile(r"[^\W\d_]{3,}\s*/\s*[^\W\d_]{3,}(?:\s*/\s*[^\W\d_]{3,})?")
 """Words that strokes part, which may be sides: Höhe/Breite/Tiefe."""
@@ -479,6 +485,11 @@ def _forms(name: str) -> Iterator[str]:
     if outside.strip() and outside != name:
         yield plain(outside)
         yield plain(unit_in(outside)[0])
+    # How well it is known says nothing of what it is, as in "Peso aprox."
+    exact = _ABOUT.sub(" ", name)
+    if exact.strip() and exact != name:
+        yield plain(exact)
+        yield plain(unit_in(exact)[0])
     # "Dimensions LxWxH mm": of what order the sizes are.
     unordered = LEGEND.sub(" ", name)
     if unordered.strip() and unordered != name:
