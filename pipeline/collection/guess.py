@@ -16,8 +16,8 @@ from pipeline.collection.guessing.by_values import (
     by_values,
     is_coded,
     perhaps_sizes,
-    repeated_in,
     second_number,
+    settle_number,
     unique_in,
 )
 from pipeline.collection.guessing.columns import (
@@ -40,7 +40,8 @@ from pipeline.collection.guessing.fields import (
     thousands_in,
 )
 from pipeline.collection.guessing.headings import place_by_heading
-from pipeline.collection.guessing.names import bare, is_length, is_side, misspelt, named
+from pipeline.collection.guessing.likeness import misspelt
+from pipeline.collection.guessing.names import bare, is_length, is_side, named
 from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.guessing.orders import section_of
 from pipeline.collection.guessing.questions import Question
@@ -75,9 +76,6 @@ from pipeline.collection.places import parted
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.headings import HEADING
 from pipeline.collection.sources.registry import is_address
-
-MOST_REPEATED = 0.1
-"""Share of object numbers that may be repeated or missing before another column of numbers is looked for."""
 
 _SIDES = ("height_m", "width_m", "depth_m", "diameter_m")
 
@@ -439,12 +437,12 @@ def _chosen(
             names = tuple(column.name for column in those)
             words = fieldname.removesuffix("_m").removesuffix("_kg").replace("_", " ")
             told.questions.append(Question(fieldname, f"which column is the {words}?", names, names[0]))
-    _settle_number(able.get("object_number", ()), columns, found, told)
+    settle_number(able.get("object_number", ()), columns, found, told)
     number = found.get("object_number")
     if number is None:
         found["object_number"] = number = unique_in(name, columns, found)
         if found.get("object_name") is number and is_coded(number):
-            del found["object_name"]  # "Object" that numbers things names none
+            del found["object_name"]
         told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
         texts = texts_among(columns, found.values())
         free = [one for one in columns if one is number or (one not in found.values() and one not in texts)]
@@ -470,28 +468,6 @@ def _chosen(
             f"column {number.name!r} is empty in {len(number.values) - len(number.filled)} rows, which are refused"
         )
     return found
-
-
-def _settle_number(
-    able: Sequence[Column], columns: Sequence[Column], found: dict[str, Column], told: GuessNotes
-) -> None:
-    """Take another column of numbers where the likeliest repeats them or is empty, as of accessions of many objects.
-
-    That is the next one by its name, or else one that has another number in each row.
-    """
-    if "object_number" in told.choices or not able or repeated_in(able[0]) <= MOST_REPEATED or able[0].blanks:
-        return
-    fields = {id(column) for column in found.values()}
-    others = [column for column in columns if id(column) not in fields and column.numbering]
-    others.sort(key=repeated_in)
-    other = next((column for column in (*able, *others) if repeated_in(column) <= MOST_REPEATED), None)
-    if other is not None:
-        found["object_number"] = other
-        empty = len(able[0].distinct) == len(able[0].filled)
-        told.doubts.append(
-            f"{able[0].name!r} {'is empty in many rows' if empty else 'gives many objects one number'}: "
-            f"{other.name!r} is taken for theirs"
-        )
 
 
 def _column(name: str, columns: Sequence[Column], key: str, wanted: str) -> Column:

@@ -51,7 +51,7 @@ Louvre says it: such things share no case."""
 
 ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
-    r"|salon|sala|salone|galleria|galería|galeria|zaal|\w*sal|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
+    r"|salon|sala|salone|galleria|galería|galeria|αιθ\.|zaal|\w*sal|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
     r"|ruang|gedung|phòng|nhà|salla|დარბაზი|սրահ|ցուցասրահ|ห้อง\S*|القاعة|قاعة|غرفة|تالار|אולם|חדר|\w*展示室[a-z\d]{0,3})(?!\w)",
     re.IGNORECASE,
 )
@@ -141,11 +141,11 @@ def parted(text: str) -> NamedPlace:
     enclosed = _ENCLOSED.fullmatch(text)
     if enclosed and _tells(enclosed[2]):
         return NamedPlace(enclosed[1], displayed=enclosed[2])
-    first = _CASE_FIRST.fullmatch(text)
-    if first and _SIDE_OF.fullmatch(f"in room {first[1]}"):
-        return NamedPlace(first[2], displayed=first[1])
-    if first and _patterns()[0].fullmatch(first[1]):
-        return NamedPlace(first[2], first[1])
+    ahead = _CASE_FIRST.fullmatch(text)
+    if ahead and _SIDE_OF.fullmatch(f"in room {ahead[1]}"):
+        return NamedPlace(ahead[2], displayed=ahead[1])
+    if ahead and _patterns()[0].fullmatch(ahead[1]):
+        return NamedPlace(ahead[2], ahead[1])
     lies = _SIDE_OF.fullmatch(text)
     if lies and names_room(lies[1]):
         return NamedPlace(lies[1], displayed=lies[2])

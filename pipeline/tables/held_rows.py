@@ -13,7 +13,21 @@ from pipeline.tables import table
 from pipeline.tables.rows import BUT_NOT, SOME_WORDS, UNSEEN, Entries, TableRow, Text, checked
 
 CASES = (
-    *("case", "cases", "Schrank", "kast", "Vit", "Vitr", "ケース", "armoire", "armadio", "armario", "armário", "dolap"),
+    *(
+        "case",
+        "cases",
+        "Schrank",
+        "kast",
+        "Vit",
+        "Vitr",
+        "προθ",
+        "ケース",
+        "armoire",
+        "armadio",
+        "armario",
+        "armário",
+        "dolap",
+    ),
     *("skab", "skåp", "skap", "kaappi", "szafa", "шкаф", "skříň", "ormar", "dulap", "szekrény", "ντουλάπα", "armari"),
 )
 """Words that name a case where a number follows them, or in a field for cases: else they may be of furniture."""

@@ -15,7 +15,8 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guess import Guess, guess
-from pipeline.collection.guessing.names import complements, misspelt, named
+from pipeline.collection.guessing.likeness import misspelt
+from pipeline.collection.guessing.names import complements, named
 from pipeline.collection.reading import read_items
 from pipeline.records import Item
 

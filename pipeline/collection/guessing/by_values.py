@@ -10,6 +10,7 @@ from itertools import pairwise
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, internal, untaken
 from pipeline.collection.guessing.names import DESCRIPTION, TEXTS, called, named
+from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
 from pipeline.tables.material_words import folded, material_words
@@ -204,3 +205,33 @@ def _varied(column: Column) -> bool:
 
 
 _FIRST_YEAR, _LAST_YEAR = 1400, 2100
+
+
+MOST_REPEATED = 0.1
+"""Share of object numbers that may be repeated or missing before another column of numbers is looked for."""
+
+
+def settle_number(
+    able: Sequence[Column], columns: Sequence[Column], found: dict[str, Column], told: GuessNotes
+) -> None:
+    """Take another column of numbers where the likeliest repeats them or is empty, as of accessions of many objects.
+
+    That is the next one by its name, or else one that has another number in each row.
+
+    able : columns that may be of numbers by their names
+    columns : of the source
+    found, told : as of `guess`; they grow
+    """
+    if "object_number" in told.choices or not able or repeated_in(able[0]) <= MOST_REPEATED or able[0].blanks:
+        return
+    fields = {id(column) for column in found.values()}
+    others = [column for column in columns if id(column) not in fields and column.numbering]
+    others.sort(key=repeated_in)
+    other = next((column for column in (*able, *others) if repeated_in(column) <= MOST_REPEATED), None)
+    if other is not None:
+        found["object_number"] = other
+        empty = len(able[0].distinct) == len(able[0].filled)
+        told.doubts.append(
+            f"{able[0].name!r} {'is empty in many rows' if empty else 'gives many objects one number'}: "
+            f"{other.name!r} is taken for theirs"
+        )

@@ -9,8 +9,9 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, cast
 
 from pipeline.collection.guessing.columns import NUMBER, Column, candidates, columns_of
+from pipeline.collection.guessing.likeness import of_table, same_stem
 from pipeline.collection.guessing.long_rows import VALUES
-from pipeline.collection.guessing.names import CALLED, named, of_table, plain, same_stem
+from pipeline.collection.guessing.names import CALLED, named, plain
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.measurement_terms import kind_of, part_of, unit_of
 from pipeline.collection.sources.schema import DatabaseTable

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from typing import Annotated
 from unicodedata import normalize
@@ -20,7 +19,6 @@ from pipeline.collection.guessing.name_words import (
     FORMER,
     HOLDING,
     OF_CODES,
-    OF_KEYS,
     USUAL,
 )
 from pipeline.collection.guessing.units import told_unit
@@ -97,10 +95,6 @@ _CUT_ELSEWISE = frozenset({"dept"})
 """What is short for another word: the department."""
 _SHORT = 4
 """Letters up to which an s at the end is hardly a plural's: "loss", "mass"."""
-_LONG = 5
-"""Letters from which a name that is nearly another one is hardly a name of its own."""
-_ALMOST = 0.9
-"""Likeness of two such names, 1 being the same: one letter in ten."""
 _WEAK = 1000
 """Rank of a name that is only part of what stands in the head."""
 
@@ -166,7 +160,8 @@ class _ColumnNames:
 
 
 @cache
-def _names() -> dict[str, ColumnMeaning]:
+def column_names() -> dict[str, ColumnMeaning]:
+    """Return what the names of the table mean, each as `plain` writes it."""
     rows = checked(_ColumnNames, table("column_names"), "column_names.csv", named="field")
     found: dict[str, ColumnMeaning] = {}
     for row in rows:
@@ -180,7 +175,7 @@ def _singular_names() -> dict[str, ColumnMeaning]:
     """Return what names say in the singular, those left out that say two things then: "Matières", "object_names"."""
     found: dict[str, ColumnMeaning] = {}
     several = set()
-    for name, what in _names().items():
+    for name, what in column_names().items():
         one = _singular(name)
         if found.setdefault(one, what).field != what.field:
             several.add(one)
@@ -229,7 +224,7 @@ def unit_in(name: str) -> tuple[str, str | None]:
             return rest, unit
     joined = _JOINED.fullmatch(name.strip())
     if joined is not None:
-        said = _names().get(plain(joined[1]))
+        said = column_names().get(plain(joined[1]))
         unit = unit_of(joined[2])
         if said is not None and unit in units_of("height_m" if said.field == LENGTH else said.field):
             return joined[1], unit
@@ -247,7 +242,7 @@ def bare(name: str) -> str:
 
 
 def _says(name: str) -> str | None:
-    found = _names().get(plain(unit_in(name)[0]))
+    found = column_names().get(plain(unit_in(name)[0]))
     return None if found is None else found.field
 
 
@@ -275,16 +270,16 @@ def named(name: str) -> ColumnMeaning | None:
     above = set(map(plain, path[:-1]))
     denoting = _says(path[-1]) == "title" or plain(path[-1]) in DENOTING
     if len(path) > 1 and denoting and _says(path[-2]) == "gallery":
-        return _names()[plain(path[-2])]  # what a place is called, and no thing: "Raum.bezeichnung"
+        return column_names()[plain(path[-2])]  # what a place is called, and no thing: "Raum.bezeichnung"
     if plain(name) != _NUMBER or len(_OTHER.sub("", name)) == 1:
         forms = [form for form in forms if form != _NUMBER]  # the N of "Y/N"
     if _by_strokes(name):
         return ColumnMeaning(TEXTS, _WEAK)
     unit = unit_in(name)[1]
     for form in forms:
-        found = _names().get(form)
+        found = column_names().get(form)
         if found is not None and found.field == TEXTS and form in _MASSES and unit in units_of("mass_kg"):
-            return _names()["mass"]  # "Masse (g)", which without a unit are the sizes, as the Swiss write them
+            return column_names()["mass"]  # "Masse (g)", which without a unit are the sizes, as the Swiss write them
         # What stands below a description is none: "Description.Material.Keyword".
         if found is not None and not (found.field == DESCRIPTION and form in above):
             return found
@@ -305,7 +300,7 @@ def _by_strokes(name: str) -> bool:
     rest = unit_in(name)[0].strip(" ()")
     if not STROKES.fullmatch(rest):
         return False
-    said = [_names().get(plain(word)) for word in rest.split("/")]
+    said = [column_names().get(plain(word)) for word in rest.split("/")]
     sides = {one.field for one in said if one is not None}
     return len(sides) == len(said) and "height_m" in sides and sides <= {*_UPRIGHT_AND_PLAN, LENGTH}
 
@@ -317,7 +312,7 @@ def _beside_frame(name: str) -> ColumnMeaning | None:
     """Return the side, or the weight, that a name tells beside whether the frame counts, which is meant rather."""
     rest, unit = unit_in(name)
     told = without_frame(rest)
-    what = None if told is None else _names().get(plain(told[0]))
+    what = None if told is None else column_names().get(plain(told[0]))
     if what is None or told is None or not (what.field == LENGTH or units_of(what.field)):
         return None
     if not told[1] and unit is None:
@@ -331,7 +326,7 @@ def _cut(name: str) -> ColumnMeaning | None:
     form = plain(word)
     if not word.endswith(".") or len(form) < _FEWEST or " " in form or form in _CUT_ELSEWISE:
         return None
-    fields = {what.field for known, what in _names().items() if known.startswith(form) and " " not in known}
+    fields = {what.field for known, what in column_names().items() if known.startswith(form) and " " not in known}
     field = fields.pop() if len(fields) == 1 else ""
     return ColumnMeaning(field, _WEAK) if field == LENGTH or units_of(field) else None
 
@@ -353,54 +348,10 @@ def complements(name: str, other: str) -> bool:
     return sorted(said) == [(False, True), (True, False)]
 
 
-def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
-    """Return what the name of a column would say if a letter or two of it were others, and the name that it has then.
-
-    Parameters
-    ----------
-    name : str
-        Of a column that says nothing as it stands: "acession_number", "dimesions".
-
-    Returns
-    -------
-    (ColumnMeaning, str) or None
-        None where no long name is so near.
-    """
-    form = plain(unit_in(name)[0])
-    if len(form) < _LONG or ELSEWHERE.intersection(form.split()):
-        return None  # "Auteur" is no "hauteur"
-    # A key is no misspelt word: "classification_id" is no classification.
-    last = form.split()[-1]
-    known = [one for one in _names() if len(one) >= _LONG and (last not in OF_KEYS or one.split()[-1] == last)]
-    # Two letters exchanged leave the same letters, and the first one: "heigth".
-    near = [one for one in known if one[0] == form[0] and sorted(one) == sorted(form)]
-    near += get_close_matches(form, known, n=1, cutoff=_ALMOST)
-    return (_names()[near[0]], near[0]) if near else None
-
-
 def is_code(name: str) -> bool:
     """Whether a column within others is of codes or dates: "location.code" beside "location.name"."""
     path = path_of(name)
     return len(path) > 1 and plain(path[-1]) in OF_CODES
-
-
-def same_stem(word: str, table: str) -> bool:
-    """Whether a word is the name of a table, but for its ending and what stands before it.
-
-    "objekt" of "tblObjekte", "category" of "categories", "room" of "collection_rooms".
-    """
-    words = plain(table).split()
-    return any(_same("".join(words[at:]).removeprefix("tbl"), word) for at in range(len(words)) if len(words) - at <= 3)
-
-
-def _same(name: str, word: str) -> bool:
-    short, long = sorted((word.removesuffix("y"), name.removesuffix("ies")), key=len)
-    return len(short) >= 3 and long.startswith(short) and len(long) - len(short) <= 2
-
-
-def of_table(table: str, field: str) -> bool:
-    """Whether the name of a table is that of a field, in the plural perhaps: "Standorte" of the gallery."""
-    return any(found.field == field and same_stem(name.replace(" ", ""), table) for name, found in _names().items())
 
 
 def path_of(name: str) -> list[str]:
@@ -504,7 +455,7 @@ def _within(name: str) -> ColumnMeaning | None:
     """Return what the last or the first words of a name say: "Akt. Standort"; of numbers, places and materials only."""
     words = plain(unit_in(name)[0]).split()
     if len(words) == 1 and _SIGNS.fullmatch(words[0]):
-        ends = (_names().get(words[0][at:]) for at in range(1, len(words[0]) - 1))
+        ends = (column_names().get(words[0][at:]) for at in range(1, len(words[0]) - 1))
         last = next(filter(None, ends), None)
         return None if last is None or last.internal else ColumnMeaning(last.field, _WEAK + last.rank)
     if (
@@ -518,7 +469,7 @@ def _within(name: str) -> ColumnMeaning | None:
     usual = bool(USUAL & set(words))
     for many in range(min(len(words) - 1, 3), 0, -1):
         for part in (words[-many:], words[:many]):
-            found = _names().get(" ".join(part))
+            found = column_names().get(" ".join(part))
             if found is None or found.internal or found.field not in ("object_number", "gallery", "medium"):
                 continue
             if found.field == "gallery" or not usual:
