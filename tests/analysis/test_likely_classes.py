@@ -199,14 +199,21 @@ def test_the_mixture_is_calibrated_where_the_first_class_alone_is_not() -> None:
     assert np.mean(difference) == pytest.approx(worse, abs=off)
 
 
-OWL = Item(
-    "70.32", "G", title="Owl", classification="Ceramics", medium="porcelain", height_m=0.21, width_m=0.10, depth_m=0.14
+ROBIN = Item(
+    "70.32",
+    "G",
+    title="Robin",
+    classification="Ceramics",
+    medium="porcelain",
+    height_m=0.21,
+    width_m=0.10,
+    depth_m=0.14,
 )
-"""A porcelain owl: by the title a figure, by the classification a vessel."""
+"""A porcelain robin: by the title perhaps a figure, by the classification a vessel."""
 
 
 def test_classes_that_count_are_those_likely_enough_for_which_something_else_is_computed() -> None:
-    scene = classify(OWL)
+    scene = classify(ROBIN)
     each = scenes_by_class(scene)
     assert each[0].classes[0] == scene.object_class
     assert each[0].scene is scene
@@ -219,13 +226,13 @@ def test_classes_that_count_are_those_likely_enough_for_which_something_else_is_
     named = {name for one in each for name in one.classes}
     # Nothing is computed for what lies in a case or is held by a mount; the others that are likely are all there.
     left = {name for name, p in scene.chances if p >= LEAST} - named
-    assert all(not classify(OWL, None, (name, "test")).models for name in left)
+    assert all(not classify(ROBIN, None, (name, "test")).models for name in left)
 
 
 def test_what_people_decide_and_what_makes_no_difference_is_certain() -> None:
     decided = Decision(
         1,
-        OWL.object_number,
+        ROBIN.object_number,
         DecisionKind.CLASS,
         who="A",
         why="seen",
@@ -233,17 +240,17 @@ def test_what_people_decide_and_what_makes_no_difference_is_certain() -> None:
         recorded="",
         object_class="figurine",
     )
-    assert place(OWL, None, ()).may_be
-    assert not place(OWL, None, (decided,)).may_be
-    assert not scenes_by_class(classify(OWL, None, ("figurine", "A")))
-    assert not scenes_by_class(replace(classify(OWL), chances=(("vessel", 0.97), ("figurine", LEAST - 0.01))))
+    assert place(ROBIN, None, ()).may_be
+    assert not place(ROBIN, None, (decided,)).may_be
+    assert not scenes_by_class(classify(ROBIN, None, ("figurine", "A")))
+    assert not scenes_by_class(replace(classify(ROBIN), chances=(("vessel", 0.97), ("figurine", LEAST - 0.01))))
     # What is computed alike for two classes is one.
-    same = replace(classify(OWL), chances=(("vessel", 0.6), ("vessel", 0.4)))
+    same = replace(classify(ROBIN), chances=(("vessel", 0.6), ("vessel", 0.4)))
     assert not scenes_by_class(same)
 
 
 def test_nothing_is_weighed_where_nothing_is_computed_for_what_it_is_taken_for() -> None:
-    scene = classify(OWL)
+    scene = classify(ROBIN)
     assert not scenes_by_class(replace(scene, models=()))
     assert not scenes_by_class(replace(scene, missing=("height",)))
 

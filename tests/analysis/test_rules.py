@@ -204,9 +204,9 @@ def test_own_rules_that_cannot_be_used_are_named(text: str | bytes, message: str
         ("Gipsabguss", "Bust of Caesar", "bust"),
         ("Plaster cast", "Portal of Saint-Gilles", "mounted"),
         ("Sculpture", "Chandelier", "chandelier"),
-        ("Plaster", "Hermes", "object"),
+        ("Plaster", "Hermes", "statue"),
     ],
 )
 def test_a_cast_is_what_it_was_cast_from(name: str, title: str, taken: str) -> None:
-    """Its name says only how it was made; and plaster is no small Czech cloak, nor Hermes several herms."""
+    """Its name says only how it was made; and plaster is no small Czech cloak; Hermes is a god, not several herms."""
     assert decide(name, title, medium="plaster", height_m=2.0).rule.object_class == taken

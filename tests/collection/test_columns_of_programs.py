@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from pipeline.collection.guessing.columns import columns_of
+from pipeline.collection.guessing.likeness import misspelt
 from pipeline.collection.guessing.long_rows import long_form_of
-from pipeline.collection.guessing.names import misspelt, named
+from pipeline.collection.guessing.names import named
 
 NAMES = {
     "TMS": "ObjectNumber=object_number CurLocationString=gallery DisplayDimensions=dimensions OnView=on_display",
