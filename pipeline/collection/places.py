@@ -18,8 +18,8 @@ _SIGN = r"(?:[a-z]{0,3}\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS, MW4."""
 
 _SIDE_OF = re.compile(
-    r"(\w(?:[\w'.]| (?!(?:on|the|of|by|to|near|against|an|am|der|die|das|auf|au|du|sur|la|le|al|alla|sulla|del|della|en|el"
-    r"|na|no|de|aan|op|north|south|east|west|left|right|back|end)\b))*)"
+    r"(\w(?:[\w'.]| (?!(?:on|the|of|by|to|near|against|an|am|der|die|das|auf|au|du|sur|la|le|al|alla|sulla|del|della|en"
+    r"|el|na|no|de|aan|op|north|south|east|west|left|right|back|end)\b))*)"
     r" (floor|wall|ceiling|Boden|Wand|Decke|sol|mur|plafond|pavimento|parete|soffitto|suelo|pared|techo|vloer|muur)",
     re.IGNORECASE,
 )
