@@ -21,6 +21,7 @@ from pipeline.collection.sources.rows import TypedNumber, as_text
 from pipeline.errors import InputError
 from pipeline.quantities import LENGTHS, figures
 from pipeline.records import ContactPolygon, Origin, Problem, Provenance
+from pipeline.tables.held_rows import meant_of
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
 _NOTED = re.compile(r"\s*(?P<number>[^()]*\d[^()]*?)\s*(?P<note>\([^()\d]*[^\W\d_]{2}[^()\d]*\))\s*")
@@ -203,6 +204,8 @@ class Cells:
             return None
         meaning = str(_translate(column).get(text.casefold(), text.casefold()))
         known = [one.value for one in CHOICES[name]]
+        # What no mapping translates may be said as people write it: "two hooks or D-rings".
+        meaning = meaning if meaning in known else meant_of(name, text)
         if meaning not in known:
             given = ", ".join(map(repr, column.values))
             message = f"{_show(text)} is none of {', '.join(known)}{f', nor of {given}' if given else ''}"

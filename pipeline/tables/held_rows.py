@@ -232,6 +232,24 @@ def told_by(text: str) -> HeldAs:
     return _of(found)
 
 
+_OF_FIELDS = {"furniture_anchorage": "anchorage"}
+"""Field of how a thing is held -> what the words for displays tell of it, where that has another name."""
+
+
+def meant_of(field: str, text: str) -> str:
+    """Return what a text means of a field's words for how things are held: "two_hooks"; "" where it says none.
+
+    Parameters
+    ----------
+    field : str
+        Of the record: support, hanging, furniture or furniture_anchorage.
+    text : str
+        In the museum's words: "two hooks or D-rings".
+    """
+    found = getattr(told_by(text), _OF_FIELDS.get(field, field), None)
+    return "" if found is None else str(found.value)
+
+
 @lru_cache(maxsize=4096)
 def in_no_case(text: str) -> bool:
     """Whether a text tells that a thing is shown in the open: "hors vitrine", "open display".

@@ -194,6 +194,16 @@ def test_words_counts_and_truths(read: Read) -> None:
     assert (d.support, d.section_count, d.susceptible, d.problems) == (None, None, None, ())
 
 
+@pytest.mark.parametrize(
+    ("said", "hanging"),
+    [("two hooks or D-rings", "two_hooks"), ("French cleat", "cleat"), ("wire", "wire"), ("zwei Haken", "two_hooks")],
+)
+def test_words_that_no_mapping_translates_are_read_as_people_write_them(read: Read, said: str, hanging: str) -> None:
+    mapping = MAPPING.replace("[display]", 'hanging = { column = "hung" }\n[display]')
+    item = one(read(f"number,location,title,height,mass,hung\nA1,H,V,,,{said}\n", mapping))
+    assert (item.hanging, item.problems) == (hanging, ())
+
+
 def test_texts_are_kept_as_they_are(read: Read) -> None:
     title = """<script>alert("1")</script> & 'q' =cmd|' /C'!A0 \\ ${x} {{7*7}} Ω"""
     quoted = title.replace('"', '""')

@@ -21,16 +21,13 @@ from pipeline.collection.money import no_money
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.collection.sources.rows import TypedNumber
-from pipeline.tables.held_rows import HeldAs, told_by
+from pipeline.tables.held_rows import HeldAs, meant_of, told_by
 
 MOST_WORDS = 30
 """Different texts that a column of flags has at most."""
 
 _ADDED = {("ft", "in"): 12.0, ("lb", "oz"): 16.0}
 """A greater and a lesser unit -> of the lesser in one of the greater."""
-
-_HELD = {"furniture_anchorage": "anchorage"}
-"""Field of how a thing is held -> what the words for displays tell of it, where that has another name."""
 
 _NAMING = 0.5
 """Share of a column's texts that name a unit from which each is read with its own."""
@@ -156,12 +153,6 @@ def tells_display(column: Column) -> bool:
     some = [text for text in column.distinct if flag_of(text, display=True) is None]
     free = [text for text in some if text.casefold() not in vocabulary]
     return len(free) >= 0.5 * len(column.distinct) > 0 and any(told_by(text) != HeldAs() for text in free[:ASKED])
-
-
-def _meant(name: str, text: str) -> str:
-    """Return what a text means of a vocabulary of how things are held; "" where it says nothing of that."""
-    found = getattr(told_by(text), _HELD.get(name, name), None)
-    return "" if found is None else str(found.value)
 
 
 @dataclass
@@ -304,7 +295,7 @@ class Fields:
         """Return the entry of words that are some of a vocabulary, or mean some of it."""
         words = {one.value for one in CHOICES[name]}
         texts = list({text.casefold(): text for text in reversed(column.distinct)}.values())[::-1]
-        said = {text: text.casefold() if text.casefold() in words else _meant(name, text) for text in texts}
+        said = {text: text.casefold() if text.casefold() in words else meant_of(name, text) for text in texts}
         unknown = [text for text, meaning in said.items() if not meaning]
         if len(unknown) > 0.5 * len(said) or len(said) > MOST_WORDS:
             self._leave_out(name, column, f"in other words than {', '.join(sorted(words))}")
