@@ -52,7 +52,7 @@ Louvre says it: such things share no case."""
 
 ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
-    r"|salon|sala|salone|galleria|galería|galeria|αιθ\.|zaal|\w*sal|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
+    r"|salon|sala|salone|galleria|galería|galeria|αιθ\.|zaal|\w*sal(?:en)?|\w*rummet|\w*rommet|\w*hallen|galleriet|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
     r"|ruang|gedung|phòng|nhà|salla|დარბაზი|սրահ|ցուցասրահ|ห้อง\S*|القاعة|قاعة|غرفة|تالار|אולם|חדר|\w*展示室[a-z\d]{0,3})(?!\w)",
     re.IGNORECASE,
 )
@@ -191,6 +191,17 @@ def parted(text: str) -> NamedPlace:
         return NamedPlace(room_alone, text[len(room_alone) :].strip())
     # "Suspended above the stairs": a place in the air is no room's name alone.
     return NamedPlace(text, displayed=text if hangs_above(text) else "")
+
+
+def is_no_case(case: str) -> bool:
+    """Say whether a field for cases says that there is none: FS and EXP, free-standing and exposed.
+
+    Parameters
+    ----------
+    case : str
+        As the Victoria and Albert Museum writes it.
+    """
+    return case.strip() in ("FS", "EXP")
 
 
 @lru_cache(maxsize=4096)

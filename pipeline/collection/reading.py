@@ -24,7 +24,7 @@ from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.naming import titled
 from pipeline.collection.opening import open_source
-from pipeline.collection.places import case_in, located, parted
+from pipeline.collection.places import case_in, is_no_case, located, parted
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.row_audit import RowAudit
 from pipeline.collection.source_audit import audit, judged, taken_away
@@ -441,6 +441,9 @@ class RowReader:
         if gallery != NOWHERE and self._mapping.columns["gallery"].cases:
             gallery, values["case"], held = parted(gallery)
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), held)))
+        if is_no_case(values.get("case") or ""):
+            values["displayed"] = "; ".join(filter(None, (values.get("displayed"), f"case {values['case'].strip()}")))
+            values["case"] = ""
         if not values.get("case") and "case" not in self._mapping.columns:
             values["case"] = case_in(values.get("displayed") or "")
         photographs, shown = self._mapping.images, first_of(str(values.get("image") or ""))

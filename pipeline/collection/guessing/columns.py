@@ -33,6 +33,22 @@ from pipeline.collection.sources.measurement_terms import kind_within, unit_of
 from pipeline.collection.sources.measurements import IN_WORDS, OTHER
 from pipeline.errors import InputError
 
+_RECORDS = frozenset(
+    {
+        "object",
+        "objects",
+        "museum object",
+        "artwork",
+        "artworks",
+        "item",
+        "items",
+        "record",
+        "records",
+        "humanmadeobject",
+    }
+    | {"accession number", "inventory number", "object number", "registration number"}
+)
+"""What interfaces of programs call all that they list, or its numbers, and no kind of things."""
 NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
@@ -175,6 +191,11 @@ class Column:
         return self.length > _LONGEST and (what is None or what.field != TEXTS)
 
     @property
+    def of_records(self) -> bool:
+        """Whether it tells of all that they are records of objects, and not of what kind."""
+        return bool(self.filled) and {text.strip().casefold() for text in self.distinct} <= _RECORDS
+
+    @property
     def says_one(self) -> bool:
         """Whether it says the same of many objects, and so tells none from another."""
         return len(self.filled) >= FEWEST and len(self.distinct) == 1
@@ -238,6 +259,8 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
         # A column called "media" may hold pictures, or their numbers.
         pictures = what is not None and what.field == "medium" and (column.numeric or column.pictured > 0.5)
         # An address names nothing in words.
+        if what is not None and what.field in ("object_name", "classification") and column.of_records:
+            continue
         if what is not None and not pictures and not (what.field in _IN_WORDS and column.of_machine):
             found.setdefault(what.field, []).append((what, column))
     out: dict[str, list[Column]] = {}
