@@ -99,3 +99,6 @@ KINDS_ONLY = frozenset(
 
 A cast is what it was cast from: David is a statue, and the portal of Saint-Gilles part of a building.
 """
+
+NAMED_AFTER = frozenset({"plato"})
+"""Words for things that in a title beside an object name are rather names of persons: a teapot called Plato."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from pipeline.analysis.akin import akin, forms, heads_of, homographs, known
-from pipeline.analysis.naming_words import ANY_LIGHT, FRAGMENTS, KINDS_ONLY, LIDS, OF_STUFF, SCULPTURES
+from pipeline.analysis.naming_words import ANY_LIGHT, FRAGMENTS, KINDS_ONLY, LIDS, NAMED_AFTER, OF_STUFF, SCULPTURES
 from pipeline.analysis.rule_table import (
     BREAK,
     HEAD_FIRST,
@@ -203,6 +203,8 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     kinds = _kinds(item.classification) | _kinds(item.object_name)
     classed, made = _wordless(item, kinds, of)
     title = _named(item, item.title, kinds, of)
+    if title is not None and item.object_name and title.word in NAMED_AFTER:
+        title = None
     bare = _is_bare(item)
     name = _named(item, item.object_name, kinds, of, alone=bare) if item.object_name else _made_as(item, kinds, of)
     # What a table of classifications knows, such as silkscreen, is no screen.

@@ -5,9 +5,9 @@ they are named after, some of their rows after public records; expected.csv is w
 first twenty-seven were read before anything was mended for them, 83 of their 208 rows differed from that: 42 in their
 place or case, 32 in a size or weight, 17 in their class, 17 in how they are held, 33 in what they stand in or on, and 6
 in their number. Six more (cleveland_style, fire_museum, french, general_history_museum, german, greek) were written
-after that, and at first sight 12 of their 43 rows differed: 6 in their place, none in a size, 3 in their class, 5 in how
-they are held. Of the last ten (records of interfaces, norwegian, brooklyn_style) 6 of 32: 4 in their place, none in a
-size, class or hold.
+after that, and at first sight 12 of their 43 rows differed: 6 in their place, none in a size, 3 in their class, 5 in
+how they are held. Of the last ten (records of interfaces, norwegian, brooklyn_style) 6 of 32: 4 in their place, none
+in a size, class or hold.
 """
 
 import csv
@@ -23,7 +23,7 @@ from pipeline.records import Item
 
 FOLDER = Path(__file__).parents[1] / "data" / "collections" / "by_use"
 MISSED = 5
-"""Rows of all that stand or hang otherwise than for a reader: a font, a treadle machine and a console radio on pedestals,
+"""Rows that stand or hang otherwise than for a reader: a font, a treadle machine and a console radio on pedestals,
 a carpet of a drawing room, a jar on a shelf of the general store."""
 SIDES = ("height_cm", "width_cm", "depth_cm", "mass_kg")
 
