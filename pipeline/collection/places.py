@@ -44,11 +44,11 @@ _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
 """A case by its sign alone, ahead of a shelf in it: CG-12."""
 
 _NO_CASE = (
-    r"(?!case (?:FS|EXP)\b|(?:hors|sans|outside(?: of)?|not in|ohne|außerhalb(?: der)?|fuori|senza|fuera de|sin"
+    r"(?!case (?:FS|EXP|W[NESW])\b|(?:hors|sans|outside(?: of)?|not in|ohne|außerhalb(?: der)?|fuori|senza|fuera de|sin"
     r"|fora d[ae]|sem|buiten(?: de)?|zonder|utanför|uden|poza|bez|mimo|вне|без|εκτός)\b)"
 )
-"""Free-standing and exposed, in the column for cases of the Victoria and Albert Museum, and "hors vitrine", as the
-Louvre says it: such things share no case."""
+"""Free-standing, exposed and the four walls, in the column for cases of the Victoria and Albert Museum, and "hors
+vitrine", as the Louvre says it: such things share no case."""
 
 ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
@@ -194,14 +194,14 @@ def parted(text: str) -> NamedPlace:
 
 
 def is_no_case(case: str) -> bool:
-    """Say whether a field for cases says that there is none: FS and EXP, free-standing and exposed.
+    """Say whether a field for cases says that there is none: free-standing (FS), exposed (EXP), a wall (WN to WW).
 
     Parameters
     ----------
     case : str
         As the Victoria and Albert Museum writes it.
     """
-    return case.strip() in ("FS", "EXP")
+    return case.strip() in ("FS", "EXP", "WN", "WE", "WS", "WW")
 
 
 @lru_cache(maxsize=4096)

@@ -74,6 +74,19 @@ def test_that_a_thing_is_on_display_is_no_part_of_its_place(place: str, where: s
 
 
 @pytest.mark.parametrize(
+    ("case", "furniture"),
+    [("FS", Furniture.FLOOR), ("EXP", Furniture.FLOOR), ("WN", Furniture.FLOOR), ("31", Furniture.SHOWCASE)],
+)
+def test_cases_that_are_none(tmp_path: Path, case: str, furniture: Furniture) -> None:
+    path = tmp_path / "list.csv"
+    rows = "".join(f"{n},statue,marble,H 190 x W 60 x D 50 cm,Room 50a,{case}\n" for n in (1, 2, 3))
+    path.write_text(f"number,object,material,size,room,case\n{rows}", encoding="utf-8")
+    items = read_items(path, guess(path).mapping).items
+    assert {item.case for item in items} == {"" if furniture is Furniture.FLOOR else "31"}
+    assert {classify(item).furniture for item in items} == {furniture}
+
+
+@pytest.mark.parametrize(
     ("name", "height_m", "furniture"),
     [("commode", 0.87, Furniture.FLOOR), ("vase", 0.4, Furniture.PEDESTAL), ("statue", 1.9, Furniture.FLOOR)],
 )
