@@ -292,7 +292,7 @@ def test_a_word_that_is_none_of_those_and_a_second_row_are_told_as_the_sheet_sho
     def twice(sheet: Any, at: dict[Any, int]) -> None:
         sheet.append([OBJECTS[0], "East", "Vase"])
         sheet.cell(2, len(at) + 1).value = "support"
-        sheet.cell(row_of(sheet, OBJECTS[1]), len(at) + 1).value = "screwed to the wall"
+        sheet.cell(row_of(sheet, OBJECTS[1]), len(at) + 1).value = "levitating"
 
     sheet = changed_heads(museum, "t.xlsx", twice)
     told = {fault["row"]: f"{fault['message']}; {fault['remedy']}" for fault in taken_up(museum, "t.xlsx")["refused"]}
