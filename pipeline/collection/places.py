@@ -17,10 +17,13 @@ _ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
 _SIGN = r"(?:[a-z]{0,3}\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS, MW4."""
 
+_SIDE = (
+    r"(?:floor|wall|ceiling|Boden|Wand|Decke|sol|mur|plafond|pavimento|parete|soffitto|suelo|pared|techo|vloer|muur)"
+)
 _SIDE_OF = re.compile(
     r"(\w(?:[\w'.]| (?!(?:on|the|of|by|to|near|against|an|am|der|die|das|auf|au|du|sur|la|le|al|alla|sulla|del|della|en"
     r"|el|na|no|de|aan|op|north|south|east|west|left|right|back|end)\b))*)"
-    r" (floor|wall|ceiling|Boden|Wand|Decke|sol|mur|plafond|pavimento|parete|soffitto|suelo|pared|techo|vloer|muur)",
+    rf" ({_SIDE})",
     re.IGNORECASE,
 )
 """The floor, wall or ceiling of a room, where a thing lies or hangs: "Library floor", and no storey, "Second floor"."""
@@ -43,12 +46,13 @@ open display as the British Museum writes them, G12/dc3 and G24/od."""
 _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
 """A case by its sign alone, ahead of a shelf in it: CG-12."""
 
+_NONE = ("FS", "EXP", "WN", "WE", "WS", "WW")
+"""Free-standing, exposed and the four walls, in the column for cases of the Victoria and Albert Museum."""
 _NO_CASE = (
-    r"(?!case (?:FS|EXP|W[NESW])\b|(?:hors|sans|outside(?: of)?|not in|ohne|außerhalb(?: der)?|fuori|senza|fuera de|sin"
-    r"|fora d[ae]|sem|buiten(?: de)?|zonder|utanför|uden|poza|bez|mimo|вне|без|εκτός)\b)"
+    rf"(?!case (?:{'|'.join(_NONE)})\b|(?:hors|sans|outside(?: of)?|not in|ohne|außerhalb(?: der)?|fuori|senza|fuera de"
+    r"|sin|fora d[ae]|sem|buiten(?: de)?|zonder|utanför|uden|poza|bez|mimo|вне|без|εκτός)\b)"
 )
-"""Free-standing, exposed and the four walls, in the column for cases of the Victoria and Albert Museum, and "hors
-vitrine", as the Louvre says it: such things share no case."""
+"""No case is behind these words: "hors vitrine", as the Louvre says it."""
 
 ROOM = re.compile(
     r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
@@ -143,7 +147,7 @@ def parted(text: str) -> NamedPlace:
     if enclosed and _tells(enclosed[2]):
         return NamedPlace(enclosed[1], displayed=enclosed[2])
     ahead = _CASE_FIRST.fullmatch(text)
-    if ahead and _SIDE_OF.fullmatch(f"in room {ahead[1]}"):
+    if ahead and re.fullmatch(_SIDE, ahead[1], re.IGNORECASE):
         return NamedPlace(ahead[2], displayed=ahead[1])
     if ahead and _patterns()[0].fullmatch(ahead[1]):
         return NamedPlace(ahead[2], ahead[1])
@@ -201,7 +205,7 @@ def is_no_case(case: str) -> bool:
     case : str
         As the Victoria and Albert Museum writes it.
     """
-    return case.strip() in ("FS", "EXP", "WN", "WE", "WS", "WW")
+    return case.strip() in _NONE
 
 
 @lru_cache(maxsize=4096)

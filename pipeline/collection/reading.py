@@ -436,11 +436,11 @@ class RowReader:
             remedy = "record its current location; until then it counts as not on display"
             if said is not False:  # what is not on display, as a flag says, may well have no place that is told
                 cells.problems.append(Problem("gallery", "the location is empty", remedy))
-        else:
-            gallery = located(gallery)
-        if gallery != NOWHERE and self._mapping.columns["gallery"].cases:
+        elif self._mapping.columns["gallery"].cases:
             gallery, values["case"], held = parted(gallery)
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), held)))
+        else:
+            gallery = located(gallery)
         if is_no_case(values.get("case") or ""):
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), f"case {values['case'].strip()}")))
             values["case"] = ""

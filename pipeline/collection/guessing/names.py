@@ -273,9 +273,10 @@ def named(name: str) -> ColumnMeaning | None:
         return column_names()[plain(path[-2])]  # what a place is called, and no thing: "Raum.bezeichnung"
     if plain(name) != _NUMBER or len(_OTHER.sub("", name)) == 1:
         forms = [form for form in forms if form != _NUMBER]  # the N of "Y/N"
-    if _by_strokes(name):
+    rest, unit = unit_in(name)
+    rest = rest.strip(" ()")
+    if _by_strokes(rest):
         return ColumnMeaning(TEXTS, _WEAK)
-    unit = unit_in(name)[1]
     for form in forms:
         found = column_names().get(form)
         if found is not None and found.field == TEXTS and form in _MASSES and unit in units_of("mass_kg"):
@@ -290,14 +291,12 @@ def named(name: str) -> ColumnMeaning | None:
     if plain(name) in CALLED:
         return ColumnMeaning("title", _WEAK)
     # "L x W x H (mm)": nothing but the order of sizes; "Max W" is none.
-    rest = unit_in(name)[0].strip(" ()")
     legend = ColumnMeaning(TEXTS, _WEAK) if LEGEND.fullmatch(rest) and plain(rest)[:3] != "max" else None
     return legend or _cut(name) or _beside_frame(name) or _within(name)
 
 
-def _by_strokes(name: str) -> bool:
-    """Whether strokes part the sides that a column tells at once, and not the names of one in two languages."""
-    rest = unit_in(name)[0].strip(" ()")
+def _by_strokes(rest: str) -> bool:
+    """Whether strokes part the sides that a name without its unit tells, and not the names of one in two languages."""
     if not STROKES.fullmatch(rest):
         return False
     said = [column_names().get(plain(word)) for word in rest.split("/")]
