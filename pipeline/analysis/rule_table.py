@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Annotated
@@ -240,9 +240,11 @@ def _identifier(entry: str) -> str:
 
 
 def _word(entry: str) -> str:
-    if not WORD.search(fold(entry)) or "*" in entry[1:]:
+    """Return a word or phrase folded, an ending with its asterisk."""
+    folded = " ".join(WORD.findall(fold(entry)))
+    if not folded or "*" in entry[1:]:
         raise InputError(f"{entry[:_SHOWN]!r} has no word; write words, or an ending as *vase")
-    return entry
+    return f"*{folded}" if entry.startswith("*") else folded
 
 
 def _shape(name: str) -> str:
@@ -351,14 +353,21 @@ def read_rules(
     raises : TableError naming file, line, rule, column and remedy, for an unknown class or shape, a name used twice,
              an identifier that is none of the AAT's, a word that cannot match, and a last row with conditions
     """
-    if not rows:
-        raise TableError(f"{file}: has no rows; the last row must be a rule without conditions")
-    written = checked(_RuleRow, rows, file, named="rule", context={"classes": frozenset(values.classes)})
+    return _indexed(_read(rows, values, file), values, file, own)
+
+
+def _read(rows: Iterable[Row], values: AssumedValues, file: str) -> tuple[Rule, ...]:
+    written = checked(_RuleRow, tuple(rows), file, named="rule", context={"classes": frozenset(values.classes)})
     once((row.rule for row in written), "rule", file)
-    out = [_rule(row, at) for at, row in enumerate(written)]
-    if any(rows[-1][column].strip() for column in ("aat", "classification", "words", "medium", "shape")):
+    return tuple(_rule(row, at) for at, row in enumerate(written))
+
+
+def _indexed(out: tuple[Rule, ...], values: AssumedValues, file: str, own: Iterable[str]) -> RuleTable:
+    if not out:
+        raise TableError(f"{file}: has no rows; the last row must be a rule without conditions")
+    if (rest := out[-1]).aat or rest.kinds or rest.named or rest.medium or rest.shapes:
         raise TableError(
-            f"{file}, line {len(rows) + 1}: the last row must have no conditions, so that it takes the rest"
+            f"{file}, line {len(out) + 1}: the last row must have no conditions, so that it takes the rest"
         )
     words: dict[str, list[Rule]] = {}
     endings: dict[str, list[Rule]] = {}
@@ -371,7 +380,7 @@ def read_rules(
     for word in words:
         by_last.setdefault(word.rpartition(" ")[2], []).append(word)
     return RuleTable(
-        tuple(out),
+        out,
         {word: tuple(found) for word, found in words.items()},
         {ending: tuple(found) for ending, found in endings.items()},
         tuple(r for r in out if not r.named and not r.kinds and (r.medium or r.shapes or r is out[-1])),
@@ -401,15 +410,14 @@ def _spanning(words: Iterable[str]) -> re.Pattern[str] | None:
 
 
 def _rule(row: _RuleRow, position: int) -> Rule:
-    words = [(" ".join(WORD.findall(fold(entry))), entry.startswith("*")) for entry in row.words]
     return Rule(
         position,
         row.rule,
         row.object_class,
         frozenset(row.aat),
         frozenset(singular(fold(kind).replace("&", "and")) for kind in row.classification),
-        frozenset(word for word, ends in words if not ends),
-        tuple(word for word, ends in words if ends),
+        frozenset(word for word in row.words if word[0] != "*"),
+        tuple(word[1:] for word in row.words if word[0] == "*"),
         words_of(row.medium) if row.medium else None,
         tuple(SHAPES[name] for name in row.shape),
         row.why,
@@ -432,16 +440,20 @@ def with_own(path: Path | None, values: AssumedValues | None = None) -> RuleTabl
     values : what is assumed of the classes; None: Kouros's own tables
     raises : TableError naming file, line, rule, column and remedy; FileNotFoundError
     """
-    values, ours = values or assumed(), table("rules")
+    values = values or assumed()
+    # A museum's classes are added to Kouros's, or take their place by name: none that Kouros's rules name is missing.
+    ours = rules()
     if path is None:
-        return read_rules(ours, values)
-    own = read_table(path)
-    missing = [column for column in ours[0] if own and column not in own[0]]
+        return replace(ours, values=values)
+    rows = read_table(path)
+    columns = list(table("rules")[0])
+    missing = [column for column in columns if rows and column not in rows[0]]
     if missing:
-        raise TableError(f"{path.name}: there is no column {missing[0]!r}; its columns must be {', '.join(ours[0])}")
-    names = {row["rule"] for row in own}
-    both = (*own, *(row for row in ours if row["rule"] not in names))
-    return read_rules(both, values, path.name, names)
+        raise TableError(f"{path.name}: there is no column {missing[0]!r}; its columns must be {', '.join(columns)}")
+    own = _read(rows, values, path.name)
+    names = {rule.name for rule in own}
+    both = (*own, *(rule for rule in ours.rules if rule.name not in names))
+    return _indexed(tuple(replace(rule, position=at) for at, rule in enumerate(both)), values, path.name, names)
 
 
 def singular(kind: str) -> str:
