@@ -25,7 +25,7 @@ demo: $(STAMP)  ## the whole job on the bundled collection and record; ends with
 	$(BIN)/kouros demo
 
 test: $(STAMP) check-browser  ## lint, types, floors and every test but those that are long and show what others show
-	@$(MAKE) --no-print-directory --jobs 2 types rules ready
+	@$(MAKE) --no-print-directory --jobs 2 ready types rules
 	$(BOTH_CORES) -m "not long"
 
 # They say themselves which test of `make test` shows the same: tests/test_long.py.
@@ -45,7 +45,7 @@ rules: $(STAMP)
 types: $(STAMP)
 	$(BIN)/mypy
 
-# While types are checked the other core makes what both workers of the tests would else make at once.
+# What both workers of the tests would else make at once: it takes as long as types and rules, which the other core checks.
 ready: $(STAMP)
 	@PYTHONDONTWRITEBYTECODE= $(BIN)/python -m tests.ready
 

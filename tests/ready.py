@@ -1,6 +1,6 @@
 """Makes what both workers of `make test` would else make at once: bytecode of the tests, and the compiled kernels.
 
-It runs beside the check of types, while the other core has nothing to do; where both are there it takes seconds.
+It runs beside the checks of types and rules, which take as long; where both are there it takes seconds.
 """
 
 import io
