@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 from pipeline.event.answer import answered, drawn
 from pipeline.event.capacities import KINDS, Capacities
@@ -27,6 +28,7 @@ def museum(count: int, random: np.random.Generator) -> Capacities:
     return Capacities(*parts)
 
 
+@pytest.mark.long("test_what_was_found_changes_what_is_expected_of_the_rest")
 def test_the_truth_lies_in_the_range_that_reports_leave() -> None:
     """50 museums: the true acceleration, and how many fell, lie in the ranges of 9 in 10 cases.
 

@@ -141,6 +141,7 @@ def test_a_measure_of_another_package_is_recommended_as_if_it_were_our_own(museu
     assert ran(museum)["2"]["measure"] == before["measure"]
 
 
+@pytest.mark.long("models/test_other_packages::test_a_broken_one_is_said_and_left_out")
 def test_a_measure_that_cannot_be_used_is_said_and_left_out(museum: Path, tmp_path: Path) -> None:
     packages = tmp_path / "packages"
     packages.mkdir()

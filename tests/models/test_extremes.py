@@ -61,6 +61,7 @@ def work(answers: Queue[Any]) -> None:
     answers.put(("done", ""))
 
 
+@pytest.mark.long("test_the_self_test_of_the_numerics")
 def test_nothing_hangs_or_is_nan_in_silence() -> None:
     """In one process for all models: what is compiled is loaded once."""
     context = mp.get_context("forkserver")

@@ -238,6 +238,7 @@ def test_a_broken_one_is_said_and_left_out(packages: Path, tmp_path: Path, sourc
     assert "Mend it, or uninstall kouros_toppling" in done.stderr
 
 
+@pytest.mark.long("test_a_broken_one_is_said_and_left_out")
 def test_a_broken_one_stops_no_night(packages: Path, tmp_path: Path) -> None:
     museum(tmp_path, "1,A,Vase,0.4,0.2")
     install(packages, "kouros_toppling", BROKEN, POINTS)

@@ -103,9 +103,9 @@ def test_a_window_of_a_day_unpacks_the_window_and_its_margins(tmp_path, write_ma
 def test_the_memory_of_a_day_is_that_of_its_window(tmp_path, write_manifest):
     """Each in a process of its own: 24 hours are 26 million samples, 200 MB as numbers, 8 GB when processed.
 
-    Every day it is a third of that, of which still the processing alone is far beyond what is granted.
+    Every day it is an eighth of that, of which still the processing alone is far beyond what is granted.
     """
-    day = np.tile(shaken(3600.0, 1800.0), 24 if SOAK else 8)
+    day = np.tile(shaken(3600.0, 1800.0), 24 if SOAK else 3)
     write(tmp_path, day)
     used = []
     for changes, data in (({"window_s": [5300.0, 5700.0]}, None), ({}, day[530000:570001])):

@@ -1,7 +1,7 @@
 """A kill and a full disk at every call that writes, renames, links, removes, cuts or syncs a file of the museum.
 
 What each must leave is said in `calls.py`: a whole report, a status that speaks of it, an equal next night, nothing
-else.  Every day a sample is tried, and `make soak` tries every call.
+else.  `make test-long` tries a sample, and `make soak` every call.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .conftest import environment
 pytestmark = pytest.mark.slow_file
 
 STRIDE = int(os.environ.get("KOUROS_CALLS", "0"))
-"""One call of so many is disturbed, from the first on; `make soak` disturbs each; 0: the sample of every day."""
+"""One call of so many is disturbed, from the first on; `make soak` disturbs each; 0: the sample."""
 
 SAMPLE = {
     "run": {"kill": [29, 720], "full disk": [647, 1200]},
@@ -31,13 +31,6 @@ SAMPLE = {
     "report": {"kill": [90, 1600], "full disk": [60, 1600]},
 }
 """Where the first is disturbed, and after how many the next: some thousand calls in all, of which about a dozen."""
-
-DAILY: dict[str, dict[str, list[int]]] = {
-    "run": {"kill": [749, 9999], "full disk": [647, 9999]},
-    "import": {"kill": [17, 9999]},
-    "decide": {"full disk": [13, 9999]},
-}
-"""Of `make test`: a night killed and without room while it writes, and one call of two other verbs."""
 
 NIGHT = 600
 """Calls that the night has at least, for it does have an import, a report and a database, and tidies up."""
@@ -55,18 +48,10 @@ def disturbing(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return library
 
 
-@pytest.mark.parametrize(
-    "sample",
-    [
-        pytest.param(DAILY, id="a few"),
-        pytest.param(SAMPLE, id="a dozen", marks=pytest.mark.long("test_a_kill_and_a_full_disk_at_any_call")),
-    ],
-)
-def test_a_kill_and_a_full_disk_at_any_call(
-    disturbing: Path, shaking: Path, tmp_path: Path, sample: dict[str, Any]
-) -> None:
+@pytest.mark.long("operations/test_interruptions::test_a_kill_at_any_moment")
+def test_a_kill_and_a_full_disk_at_any_call(disturbing: Path, shaking: Path, tmp_path: Path) -> None:
     ways = {"kill": [1, STRIDE], "full disk": [1, STRIDE]}
-    attacks: dict[str, Any] = dict.fromkeys(SAMPLE, ways) if STRIDE and sample is SAMPLE else sample
+    attacks: dict[str, Any] = dict.fromkeys(SAMPLE, ways) if STRIDE else SAMPLE
     plan = {"folder": str(tmp_path), "site": str(shaking), "attacks": attacks}
     done = subprocess.run(
         [sys.executable, "-m", "tests.operations.calls", json.dumps(plan)],

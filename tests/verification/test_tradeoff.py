@@ -142,6 +142,7 @@ def test_the_report_shows_what_accuracy_costs(found: tradeoff.Tradeoff, tmp_path
     assert "oscillator" in page.partition("Solved in closed form")[2][:400]
 
 
+@pytest.mark.long("test_every_model_at_every_step")
 def test_the_command(tmp_path: Path) -> None:
     words = ["tradeoff", "--site", "demo", "--model", "swing", "--objects", "4", "--error", "1e-4"]
     done = kouros("-q", *words, "--json", folder=tmp_path)

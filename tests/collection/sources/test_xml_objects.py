@@ -304,6 +304,7 @@ def test_files_that_are_no_tables_are_named(head: bytes, said: str, tmp_path: Pa
         guess(path)
 
 
+@pytest.mark.long("test_objects_are_the_same_in_every_dialect")
 def test_a_real_collection_is_the_same_as_from_its_csv(tmp_path: Path) -> None:
     with bundled_collection().open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))[: 400 if SOAK else 130]
