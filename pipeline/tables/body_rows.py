@@ -148,11 +148,14 @@ def body_of(text: str, rule: str, object_class: str, material: str, height: floa
     BodyRow or None
         None where its class says what there is to say.
     """
+    by_rule = {f"{_BY_RULE}{rule}", f"{_BY_RULE}*"}
     for pattern, row in _patterns():
-        by_rule = any(word in (f"{_BY_RULE}{rule}", f"{_BY_RULE}*") for word in row.words)
-        named = by_rule or (pattern is not None and pattern.search(text))
-        kind = (not row.classes or object_class in row.classes) and (not row.materials or material in row.materials)
-        if named and kind and height >= row.taller_than:
+        if height < row.taller_than or (row.classes and object_class not in row.classes):
+            continue
+        if row.materials and material not in row.materials:
+            continue
+        # Last, for it takes the longest.
+        if not by_rule.isdisjoint(row.words) or (pattern is not None and pattern.search(text)):
             return row
     return None
 

@@ -53,6 +53,8 @@ def unmarked(text: str) -> str:
 
     Of scripts whose vowels are marks, such as Devanagari and Thai, the consonants are left: enough to tell words by.
     """
+    if text.isascii():
+        return text
     return "".join(one for one in normalize("NFKD", UNSEEN.sub("", text)) if category(one)[0] != "M")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Annotated
 from unicodedata import normalize
 
@@ -101,9 +101,16 @@ _WEAK = 1000
 _DISPLAYED = "display "
 """Before a name: that its text is the one to be shown, as in "DISPLAY_DENOMINATION"."""
 
+_OF_PATH = re.compile(r"__|(?<=[^\W\d_]{2}):(?=[^\W\d_]{3})|\.(?=[^\W\d_]{3}|[^\W\d_]+_)")
+"""What parts the names of a path: "location.onView"."""
+
 _STUFF = re.compile(r"mat(?:eri|ier)|werkstoff|malzeme|tworzyw|υλικ|материал|材質|素材|재질")
 _CRAFT = re.compile(r"te(?:ch|k|c|h|hn)ni|τεχνικ|техник|tekniik|技法|기법")
 """Parts of the names of columns that tell what a thing is made of, and how; folded."""
+
+
+_REMEMBERED = 8192
+"""Names of which it is remembered what they say: a head is asked about many times over, and so are its cells."""
 
 
 def is_length(name: str) -> bool:
@@ -186,6 +193,7 @@ def _singular(name: str) -> str:
     return " ".join(word[:-1] if len(word) > _SHORT and word.endswith("s") else word for word in name.split())
 
 
+@lru_cache(maxsize=_REMEMBERED)
 def plain(name: str) -> str:
     """Return a name as it is compared: no capitals, accents, marks and articles, "no" for every word for number."""
     bare = unmarked(_ELIDED.sub(" ", _CAMEL.sub(" ", normalize("NFC", name.replace("#", " no ")))))
@@ -197,6 +205,7 @@ def plain(name: str) -> str:
     return " ".join(kept or words)
 
 
+@lru_cache(maxsize=_REMEMBERED)
 def unit_in(name: str) -> tuple[str, str | None]:
     """Return a name without the unit that stands in it, and the unit: "Höhe in cm" as ("Höhe", "cm").
 
@@ -246,6 +255,7 @@ def _says(name: str) -> str | None:
     return None if found is None else found.field
 
 
+@lru_cache(maxsize=_REMEMBERED)
 def named(name: str) -> ColumnMeaning | None:
     """Return what the name of a column says; None for a name that no table has.
 
@@ -355,7 +365,7 @@ def is_code(name: str) -> bool:
 
 def path_of(name: str) -> list[str]:
     """Return the names of which the name of a column is a path: "location.onView" as ["location", "onView"]."""
-    return re.split(r"__|(?<=[^\W\d_]{2}):(?=[^\W\d_]{3})|\.(?=[^\W\d_]{3}|[^\W\d_]+_)", name.strip("_ ."))
+    return _OF_PATH.split(name.strip("_ ."))
 
 
 def _held(path: Sequence[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from unicodedata import normalize
 
 from pipeline.collection.dimensions.lexicon import ALIKE, meanings, unit_words
@@ -228,6 +229,7 @@ def part_of(text: str) -> str | None:
     return "" if not whole else PART_OF.get(whole)
 
 
+@lru_cache(maxsize=1024)
 def unit_of(text: str) -> str | None:
     """Return the unit that a text names, such as "Centimeters (Measurements)"; None for none.
 
