@@ -84,6 +84,7 @@ def test_equal_work_is_done_once() -> None:
     assert sliding.values["friction_static"].size == 3
 
 
+@pytest.mark.long("night/test_jobs::test_findings_do_not_depend_on_the_rest_of_the_collection")
 def test_what_is_found_of_an_object_does_not_hang_on_which_others_are_looked_at_with_it(motion: Motion) -> None:
     """Twenty-four vases of four sizes, each with room or friction of its own: they ask for the same histories.
 

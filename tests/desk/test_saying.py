@@ -355,6 +355,7 @@ def test_hostile_numbers_and_titles_stay_text(visitor: Visitor, museum: Path) ->
     assert made.object_number == HOSTILE
 
 
+@pytest.mark.long("test_a_following_night_takes_it_up")
 def test_an_object_says_that_a_measure_decided_today_is_computed_with_tonight(museum: Path, visitor: Visitor) -> None:
     told = "to be computed again tonight"
     assert told not in visitor.object("1.2").text

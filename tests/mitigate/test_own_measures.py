@@ -121,6 +121,7 @@ def test_a_row_of_a_museums_table_is_recommended_in_its_own_words(museum: Path) 
     assert ran(museum)["1"]["measure"] == "other_hook"
 
 
+@pytest.mark.long("test_a_row_of_a_museums_table_is_recommended_in_its_own_words")
 def test_a_measure_of_another_package_is_recommended_as_if_it_were_our_own(museum: Path, tmp_path: Path) -> None:
     """With its own row, between room, which does not help a vase that rocks, and all others; it can be installed."""
     packages = tmp_path / "packages"

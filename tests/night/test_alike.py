@@ -138,6 +138,7 @@ def test_of_a_changed_gallery_only_what_changed_is_worked_on(tmp_path: Path, ass
     assert found(settings) == found(fresh)
 
 
+@pytest.mark.long("night/test_keys_of_units::test_what_a_change_costs")
 def test_under_other_shaking_or_other_settings_nothing_is_taken_over(tmp_path: Path, assessed: list[str]) -> None:
     settings = museum_of(tmp_path / "museum", vases(1), sampled=True)
     night(settings)

@@ -139,6 +139,7 @@ def test_two_levels_make_curves_rates_and_spacings(tmp_path: Path) -> None:
     assert float(classes[""]["expected_harmed_50_years"]) == pytest.approx(expected, abs=1e-5)
 
 
+@pytest.mark.long("test_two_levels_make_curves_rates_and_spacings")
 def test_a_hazard_curve_in_a_file_takes_the_place_of_the_levels(tmp_path: Path) -> None:
     """One level without a return period tells no rate; with a curve beside the manifest the next night has one."""
     settings = museum(tmp_path, ("design", None, (0.3,)))

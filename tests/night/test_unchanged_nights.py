@@ -253,6 +253,7 @@ def test_a_page_whose_report_was_tampered_with_is_drawn_again(settings: Settings
     assert len(list(summary.report.parent.glob("room-*.html"))) == 3
 
 
+@pytest.mark.long("test_a_changed_motion_is_named_and_all_is_found_anew")
 def test_one_changed_motion_runs_its_own_histories_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of two motions one changes: no history of the other is run again, and a first night would find the same."""
     made = museum_of(tmp_path / "two", [{**vase, "furniture": "floor"} for vase in vases(1, 3)])

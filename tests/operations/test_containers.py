@@ -109,6 +109,7 @@ def test_image_and_services_are_of_one_piece() -> None:
     assert services["database"]["environment"]["POSTGRES_PASSWORD"].startswith("${POSTGRES_PASSWORD:?")
 
 
+@pytest.mark.long("execute/test_pool::test_processes_need_no_dask_and_a_cluster_without_it_names_the_extra")
 def test_a_night_needs_none_of_the_extras(tmp_path: Path) -> None:
     """In a process that finds nothing of what only a desk, a cluster or a database server needs."""
     workspace(tmp_path)

@@ -80,6 +80,7 @@ def a_night_was_made(folder: Path) -> bool:
     return (folder / "reports" / "latest" / "index.html").is_file() and (folder / "night.sqlite").is_file()
 
 
+@pytest.mark.long("test_what_systemd_would_start")
 def test_cron(placed: Callable[[str], str], tmp_path: Path) -> None:
     """Its line is run as cron runs it: by /bin/sh, from the home folder, with four variables and nothing else."""
     lines = [line for line in placed("kouros.cron").splitlines() if line and not line.startswith("#")]

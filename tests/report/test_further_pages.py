@@ -4,6 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from lxml import html
 
 LOANS = """
@@ -78,6 +79,7 @@ WRONG = {
 }
 
 
+@pytest.mark.long("test_a_page_of_another_package_is_in_the_report_and_in_its_navigation")
 def test_pages_that_fail_are_left_out_and_said(tmp_path: Path) -> None:
     packages = {"loans": (LOANS, "loans = loans:PAGE")}
     for at, source in enumerate(WRONG):

@@ -172,6 +172,7 @@ def test_a_sheet_of_another_name_is_refused_with_its_remedy(museum: Path) -> Non
     assert inventory(museum)[OBJECTS[0]].height_m is None
 
 
+@pytest.mark.long("test_what_came_of_each_cell")
 def test_a_later_sheet_speaks_for_its_own_cells_alone(museum: Path) -> None:
     """Who measured what stays with it, and what says the same again changes nothing."""
     number = OBJECTS[0]
