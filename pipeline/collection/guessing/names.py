@@ -101,7 +101,7 @@ _WEAK = 1000
 _DISPLAYED = "display "
 """Before a name: that its text is the one to be shown, as in "DISPLAY_DENOMINATION"."""
 
-_STUFF = re.compile(r"mat(?:eri|ier)|werkstoff|malzeme|tworzyw|υλικ|материал|材質|素材|재질")
+_STUFF = re.compile(r"mat(?:eri|ier)|soporte|suporte|werkstoff|malzeme|tworzyw|υλικ|материал|材質|素材|재질")
 _CRAFT = re.compile(r"te(?:ch|k|c|h|hn)ni|τεχνικ|техник|tekniik|技法|기법")
 """Parts of the names of columns that tell what a thing is made of, and how; folded."""
 
