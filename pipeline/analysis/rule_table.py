@@ -125,7 +125,7 @@ SHAPES: Mapping[str, Callable[[Item], bool]] = {
     "low": _low,
     "deep": _deep,
     "small": lambda item: item.height_m is not None and item.height_m < SMALL and max(_sizes(item)) < LARGE,
-    "not-small": lambda item: item.height_m is not None and (item.height_m >= SMALL or max(_sizes(item)) >= LARGE),
+    "not-small": lambda item: (item.height_m or 0.0) >= SMALL or max(_sizes(item), default=0.0) >= LARGE,
     "large": lambda item: max(_sizes(item), default=0.0) >= LARGE,
     "not-large": lambda item: max(_sizes(item), default=0.0) < LARGE,
     "tiny": lambda item: max(_sizes(item), default=TINY) < TINY,

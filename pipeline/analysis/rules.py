@@ -56,16 +56,14 @@ _MODEL = re.compile(
 """How a name begins that calls its thing a model with no word between: Model hand loom."""
 _IN_SMALL = re.compile(r"\bminiature\s+(?=[^\W\d_])")
 """What stands ahead of a thing made small: miniature furniture is no picture."""
-_SMALL_BEHIND = re.compile(r",\s*miniature\s*$")
-"""The same in inverted order: a vase, miniature, is no picture."""
+_SMALL_BEHIND = re.compile(r",\s*miniature\s*$")  # inverted: a vase, miniature, is no picture
 _THINGS = ("vessel", "dish", "seat", "table", "cabinet", "clock", "figurine")
 _NOT_THINGS = (
     *("plate", "glass", "block", "group", "animal", "container", "figure", "tray", "stand"),
     *("earthenware", "stoneware", "case"),
 )
 """What a medium calls stuff, a part, or many: silver plate, plate glass, a metal case, 22 groups of cards."""
-PICTURES = ("framed",)
-"""Classes of what hangs flat whatever its title says."""
+PICTURES = ("framed",)  # what hangs flat whatever its title says
 FORMATS = ("screen", "handscroll")
 """Rules of pictures that do not hang: a title that names one says what the thing is, not what it shows."""
 LIGHTS = ("candlestick", "chandelier")
@@ -73,18 +71,15 @@ LIGHTS = ("candlestick", "chandelier")
 _JOINED_LID = re.compile(rf"\s(?:and|und|et|e|y|en|og|och|cu)\s+(?:{'|'.join(sorted(LIDS))})s?\s*$")
 """What is said at the end of a name of a thing that has its lid."""
 LIDDED = "lidded vessel"
-"""What such a thing is."""
 _MADE_OF = re.compile(r"木造|木彫|一木造|寄木造|[銅石鉄塑]造|塑像|(?:脱活)?乾漆|金銅|鋳銅|青銅|[陶磁石木銅鉄]製")
 """What a Japanese title begins with that says what its thing is made of: no picture is called so."""
 _BODIES = frozenset(
     {"vessel", "dish", "stemmed_glass", "bust", "statue", "figurine", "lamp", "cabinet", "clock", "relief"}
 )
-_WORDS_OF_NAME = 5
-"""Words of which such a title has no more."""
+_WORDS_OF_NAME = 5  # words of which such a title has no more
 _IN_FULL = re.compile(r"[^のとやにいるたなを\s]{4,}")
 """What stands before the word for the thing in its full Japanese name, and in a picture's title seldom."""
-_FIGURES = ("statue", "standing_figure", "figurine")
-"""Classes of what a picture may show by the same name: a picture of Kannon is a figure of Kannon too."""
+_FIGURES = ("statue", "standing_figure", "figurine")  # a picture of Kannon is a figure of Kannon too
 _BESIDE = re.compile(
     r"\s*(?:with|containing|in|by|on|showing|depicting|mit|aus|auf|avec|sur|con|per|su|para|sobre|com|em|met|op|cu|din|pe"
     r"|im|z|ze|na|s|se|av|af|med|fran|fra|из|на|с|με|απο|σε)\s*"
@@ -121,10 +116,8 @@ _ADJECTIVE = re.compile(
     r"(?:[aoi]s?|[nk]y|ed|made|(?:ique|phe|aire|euse|eux|ante|ee|ale|elle|ien|ienne|ois|oise|ais|aise)s?|[^\x00-\x7f])$"
 )
 """How an unknown word ends, folded, that may be an adjective behind its noun: vaso etrusco, masque funéraire."""
-_SHORT = 2
-"""Letters up to which an unknown word behind a noun is a number or the like: chair II."""
+_SHORT = 2  # letters up to which an unknown word behind a noun is a number or the like: chair II
 _BLANK = ("", "(not assigned)", "not assigned", "unclassified", "uncategorized", "unknown", "n/a", "none", "-")
-"""Classifications that say nothing."""
 
 
 @dataclass(frozen=True)
@@ -151,9 +144,9 @@ class Readings:
         return not (self.outright or self.name or self.classification or self.medium or self.title)
 
 
-_TECHNIQUE = re.compile(r"(.{3,120}?)[,;]\s+([^,;]{3,60}(?:,\s[^,;]{3,40})?)\s*\.?\s*", re.DOTALL)
-
-
+_TECHNIQUE = re.compile(
+    r"(.{3,120}?)(?:[,;]\s+|\s+\()([^,;()]{3,60}(?:[,;]\s[^,;()]{3,40})?)\)?(?:,\s\w+)?[\s.]*", re.DOTALL
+)
 _CAPTION = re.compile(
     r".{3,200}?[,;]\s+(?:c\.?|ca\.?|circa|about|um|vers)?\s*"
     r"(?:\d{3,4}(?:\s?[-\u2013/]\s?\d{2,4})?s?|\d{1,2}(?:st|nd|rd|th)\s(?:c\.|cent\.|century)(?:\s?BCE?|\s?CE)?)"
@@ -222,6 +215,9 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
         name = replace(name, share=min(name.share, share, homographs().get(name.word, 1.0)))
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
+        if name is title is None and classed is not None:
+            # Of a minke whale the preparation, "articulated skeleton", names the thing.
+            name, classed = classed, None
     if name is None and title is not None and not item.object_name and _is_full(item.title, title):
         name = title
     if name is not None and title is not None and (_narrows(title, name, item) or _one_of_types(title, item, of)):
@@ -237,7 +233,11 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
         classed = None
     if classed is not None and speaks is title is not None and _is_only_called_a_picture(title, classed):
         speaks = None
-    found = [one for one in (name or speaks, classed, made) if one is not None]
+    called_so = name or speaks
+    if called_so is not None and called_so.rule.name in FORMATS:
+        # What is on a folding screen or a handscroll is painted, on paper, and classed so: it does not hang for that.
+        classed, made = (None if one and one.rule.object_class in PICTURES else one for one in (classed, made))
+    found = [one for one in (called_so, classed, made) if one is not None]
     decided = min(found, key=lambda one: one.rule.position, default=RuleMatch(of.rules[-1]))
     return Readings(decided, decided.rule.name in of.own, name, classed, made, title)
 

@@ -72,8 +72,8 @@ def as_displayed(item: Item) -> Item:
     if not item.displayed.strip():
         return item
     told = told_by(item.displayed)
-    # A stand within a case is no pedestal of its own: "case 3", fixed to its base.
-    within = told.furniture is Furniture.PEDESTAL and _names_case(item)
+    # A stand within a case is no pedestal of its own, nor is its floor the room's: "case 3", fixed to its base.
+    within = told.furniture in (Furniture.PEDESTAL, Furniture.FLOOR) and _names_case(item)
     # Of what is recorded to hang or to stand the words for the other are about something else.
     stands = item.support is not None and item.support not in _ABOVE
     return replace(

@@ -37,6 +37,7 @@ from pipeline.collection.guessing.fields import (
     flag_among,
     images_among,
     pictures_said,
+    tells_display,
     thousands_in,
 )
 from pipeline.collection.guessing.headings import place_by_heading
@@ -301,7 +302,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     usual = None if "gallery" in told.choices else usual_place(columns, found)
     if usual is not None:
         told.questions[:] = [question for question in told.questions if question.key != "gallery"]
-    both = () if "medium" in told.choices else material_and_technique(able.get("medium", ()))
+    stuff = [one for one in able.get("medium", ()) if not tells_display(one)]
+    both = () if "medium" in told.choices else material_and_technique(stuff)
     if both:
         told.questions[:] = [question for question in told.questions if question.key != "medium"]
         told.sure.append(f"the medium is {' and '.join(repr(column.name) for column in both)} together")

@@ -5,11 +5,11 @@ from functools import cache, lru_cache
 from typing import NamedTuple
 
 from pipeline.collection.display_words import says_shown
-from pipeline.records import Furniture
+from pipeline.records import Furniture, Support
 from pipeline.tables.held_rows import CASES, hangs_above, told_by, words_for
 from pipeline.tables.rows import UNPARTED, any_of
 
-_SEPARATOR = re.compile(r"\s*(?:[,;>|，、；]|(?<!\bw)/)\s*|:\s+|\s+[-–—]\s+")
+_SEPARATOR = re.compile(r"\s*(?:[,;>|，、；➜→➔›»▸]|(?<!\bw)/)\s*|:\s+|\s+[-–—]\s+")
 LONGEST = 300
 """Characters beyond which a text names no place that could be parted."""
 
@@ -48,6 +48,7 @@ _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
 
 _NONE = ("FS", "EXP", "WN", "WE", "WS", "WW")
 """Free-standing, exposed and the four walls, in the column for cases of the Victoria and Albert Museum."""
+_OF_ROOMS = (Furniture.FLOOR, Furniture.WALL, Furniture.RAIL)
 _NO_CASE = (
     rf"(?!case (?:{'|'.join(_NONE)})\b|(?:hors|sans|outside(?: of)?|not in|ohne|außerhalb(?: der)?|fuori|senza|fuera de"
     r"|sin|fora d[ae]|sem|buiten(?: de)?|zonder|utanför|uden|poza|bez|mimo|вне|без|εκτός)\b)"
@@ -99,14 +100,19 @@ _SHOWN_AT = re.compile(
 
 
 def located(text: str) -> str:
-    """Return a place without the words ahead of it that say that what is there is on display.
+    """Return a place without the words ahead of it, or behind it, that say that what is there is on display.
 
     Parameters
     ----------
     text : str
         As the museum writes it: "On display: Hall of Musical Instruments".
     """
-    found = _SHOWN_AT.fullmatch(text) if len(text) <= LONGEST else None
+    if len(text) > LONGEST:
+        return text
+    ahead, _, last = text.rpartition(" - ")
+    if ahead.strip() and says_shown(last):
+        return ahead.strip()  # "Greece Gallery - On Display"
+    found = _SHOWN_AT.fullmatch(text)
     return found[2] or found[3] if found and says_shown(found[1]) else text
 
 
@@ -197,15 +203,22 @@ def parted(text: str) -> NamedPlace:
     return NamedPlace(text, displayed=text if hangs_above(text) else "")
 
 
-def is_no_case(case: str) -> bool:
-    """Say whether a field for cases says that there is none: free-standing (FS), exposed (EXP), a wall (WN to WW).
+def spot_of(case: str) -> str:
+    """Return how a thing is held by a field for cases that names none; "" where it names one.
 
     Parameters
     ----------
     case : str
-        As the Victoria and Albert Museum writes it.
+        As the museum writes it: "wall", "floor"; free-standing (FS), exposed (EXP) and walls (WN to WW) as the
+        Victoria and Albert Museum does.
     """
-    return case.strip() in _NONE
+    if case.strip() in _NONE:
+        return f"case {case.strip()}"
+    whole = _patterns()[0]
+    within = not case.strip() or any(map(whole.match, _SEPARATOR.split(case[:LONGEST])))
+    told = told_by(case)
+    open_ = told.furniture in _OF_ROOMS or told.support in (Support.HUNG, Support.SUSPENDED)
+    return case if open_ and not within else ""
 
 
 @lru_cache(maxsize=4096)
@@ -240,6 +253,8 @@ def beside_case(text: str) -> str:
 
 
 def _tells(piece: str) -> bool:
+    if piece.casefold() == "loft":
+        return False  # a room below an English roof; in Danish, where it is a ceiling, things hang "i loftet"
     told = told_by(piece)
     return told.support is not None or told.furniture is not None
 

@@ -24,7 +24,7 @@ from pipeline.collection.mapping_parts import Texts
 from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.naming import titled
 from pipeline.collection.opening import open_source
-from pipeline.collection.places import case_in, is_no_case, located, parted
+from pipeline.collection.places import case_in, located, parted, spot_of
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.row_audit import RowAudit
 from pipeline.collection.source_audit import audit, judged, taken_away
@@ -441,8 +441,9 @@ class RowReader:
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), held)))
         else:
             gallery = located(gallery)
-        if is_no_case(values.get("case") or ""):
-            values["displayed"] = "; ".join(filter(None, (values.get("displayed"), f"case {values['case'].strip()}")))
+        spot = spot_of(values.get("case") or "")
+        if spot:
+            values["displayed"] = "; ".join(filter(None, (values.get("displayed"), spot)))
             values["case"] = ""
         if not values.get("case") and "case" not in self._mapping.columns:
             values["case"] = case_in(values.get("displayed") or "")

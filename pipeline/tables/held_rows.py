@@ -223,6 +223,8 @@ def told_by(text: str) -> HeldAs:
         found = [row for row in found if row.source != _ALONE]
     if any(row.source == _UNCASED for row in found):
         found = [row for row in found if row.furniture not in _ENCLOSED]
+    # "Hors vitrine" tells of no case, and of what else holds a thing nothing.
+    found.sort(key=lambda row: row.source == _UNCASED)
     support = next((row.support for row in found if row.support is not None), None)
     if support is None and any(told.denies(text) for told in _rows()):
         return replace(_of(found), support=Support.FREESTANDING)

@@ -1,6 +1,6 @@
 """Lists as they are kept for a use: catalogues of named museums, loans, checklists, schedules, mounts, machines.
 
-data/collections/by_use: forty-three lists, written for Kouros in the forms of the museums, interfaces and papers that
+data/collections/by_use: seventy-three lists, written for Kouros in the forms of the museums, interfaces and papers that
 they are named after, some of their rows after public records; expected.csv is what a reader makes of each row. As the
 first twenty-seven were read before anything was mended for them, 83 of their 208 rows differed from that: 42 in their
 place or case, 32 in a size or weight, 17 in their class, 17 in how they are held, 33 in what they stand in or on, and 6
@@ -8,6 +8,8 @@ in their number. Six more (cleveland_style, fire_museum, french, general_history
 after that, and at first sight 12 of their 43 rows differed: 6 in their place, none in a size, 3 in their class, 5 in
 how they are held. Of the last ten (records of interfaces, norwegian, brooklyn_style) 6 of 32: 4 in their place, none
 in a size, class or hold.
+The thirty that came last (cairo_style to turin_style, see the README there) differed in 104 of 190 rows at first sight;
+eight of them were read only when the others had been mended: 37 of 69 rows.
 """
 
 import csv
@@ -22,9 +24,10 @@ from pipeline.night.importing import proposed
 from pipeline.records import Item
 
 FOLDER = Path(__file__).parents[1] / "data" / "collections" / "by_use"
-MISSED = 5
+MISSED = 9
 """Rows that stand or hang otherwise than for a reader: a font, a treadle machine and a console radio on pedestals,
-a carpet of a drawing room, a jar on a shelf of the general store."""
+a carpet of a drawing room, a jar on a shelf of the general store; a statue and a false door of which only remarks say
+how they are held, a melodeon as one that is worn, a facsimile of a codex in a frame."""
 SIDES = ("height_cm", "width_cm", "depth_cm", "mass_kg")
 
 

@@ -54,7 +54,7 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     for part in dimensions.parts:
         if part.value is not None and part.value > 0.0:
             groups.setdefault(part.group, []).append(part)
-    groups = {at: _in_plan(group) for at, group in groups.items()}
+    groups = _oval({at: _in_plan(group) for at, group in groups.items()})
     bodies = [g for g in groups.values() if not is_base(g[0].name) and any(p.dimension != "weight" for p in g)]
     out: dict[str, Choice] = {}
     chosen: list[DimensionPart] = []
@@ -102,6 +102,28 @@ def _has_height(group: list[DimensionPart], height: float) -> bool:
     """Whether a group says nearly the same height, and other sides beside it."""
     said = next((p.value for p in group if p.dimension == "height" and p.value), None)
     return said is not None and len(group) > 1 and abs(said / height - 1.0) <= _SAME_HEIGHT
+
+
+def _oval(groups: dict[int, list[DimensionPart]]) -> dict[int, list[DimensionPart]]:
+    """Return groups in which what is taken for a height behind a diameter is not, where another one has a label.
+
+    "H. 6.7 cm, diam. of mouth 23 x 16.4 cm": the mouth is oval, and beside it a depth is that of the inside.
+    """
+    upright = next((at for at, g in groups.items() if any(p.dimension == "height" and not p.assumed for p in g)), None)
+    if upright is None:
+        return groups
+    out = dict(groups)
+    for at, group in groups.items():
+        said = [(part.dimension, part.assumed) for part in group]
+        if at != upright and said == [("diameter", False), ("height", True)] and not is_base(group[0].name):
+            sides = [
+                replace(part, dimension=side, assumed=False)
+                for part, side in zip(group, ("width", "depth"), strict=True)
+            ]
+            own = [part for part in out[upright] if part.dimension not in ("width", "depth", "diameter")]
+            out[upright] = [*own, *sides]
+            del out[at]
+    return out
 
 
 def _in_plan(group: list[DimensionPart]) -> list[DimensionPart]:

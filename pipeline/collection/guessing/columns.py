@@ -23,6 +23,7 @@ from pipeline.collection.guessing.names import (
     is_code,
     is_length,
     named,
+    plain,
     tells_material,
     unit_in,
 )
@@ -70,6 +71,7 @@ _LONGEST = 40
 _OF_MACHINE = re.compile(
     r"(?:https?|oai|urn|info|hdl):\S+$|[0-9a-f]{8}(?:-[0-9a-f]{4}){3}-[0-9a-f]{12}$", re.IGNORECASE
 )
+_CODED = re.compile(r"[A-Z]{1,5}[ .-]?\d[\d.,/-]*[a-z]?")
 _MOSTLY = 0.9
 """Share of the texts of a column that must be of programs (judgement)."""
 _IN_WORDS = frozenset(("title", "object_name", "classification", "medium", "gallery", DESCRIPTION))
@@ -165,7 +167,9 @@ class Column:
         """Whether most of its texts may be numbers of objects: short, with a digit, neither sizes nor addresses."""
         some = self.filled[:_SOME]
         short = sum(len(text) <= _LONGEST and any(map(str.isdigit, text)) and "://" not in text for text in some)
-        return bool(some) and short >= 0.9 * len(some) and self.dimensional < 0.5
+        # "GR 1873.8-20.1" weighs no grams.
+        coded = sum(bool(_CODED.fullmatch(text)) for text in some)
+        return bool(some) and short >= 0.9 * len(some) and (self.dimensional < 0.5 or coded >= 0.5 * len(some))
 
     @cached_property
     def blanks(self) -> tuple[str, ...]:
@@ -385,7 +389,7 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
         # With its frame a picture hangs: what such a column leaves empty is told by another.
         return sorted(so_called, key=lambda column: frame_counts(column.name) is not True) or words
     # "42.2 cm" of a column of lengths would be read as a number without a label, and so as a height.
-    free = [column for column in free if not is_length(column.name)]
+    free = [column for column in free if not any(map(is_length, (column.name, *plain(column.name).split())))]
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
     best = max(texts, key=lambda c: c.dimensional, default=None)
     return [best] if best is not None and best.dimensional > 0.6 else []

@@ -9,9 +9,11 @@ from pipeline.collection.display_words import says_away
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.fields import tells_display
 from pipeline.collection.guessing.names import called, outright
+from pipeline.collection.places import parted
 from pipeline.collection.sources.headings import HEADING, first_text, is_heading
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.sheets import SHEET
+from pipeline.tables.held_rows import in_no_case
 
 FEWEST = 2
 """Headings from which a list is taken to have some; one alone may be a remark."""
@@ -65,7 +67,8 @@ def _headings(rows: Sequence[Row]) -> list[str]:
 
 
 def _names_place(text: str) -> bool:
-    return says_away(text) or called(text, "gallery")
+    # "CASE 2 - TRADE" and "OPEN DISPLAY" tell where things are, as rooms do.
+    return says_away(text) or called(text, "gallery") or bool(parted(text).case) or in_no_case(text)
 
 
 def place_by_heading(found: dict[str, Column], columns: Sequence[Column]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from difflib import get_close_matches
 
-from pipeline.collection.guessing.name_words import ELSEWHERE, OF_KEYS
+from pipeline.collection.guessing.name_words import ABOUT, ELSEWHERE, OF_KEYS
 from pipeline.collection.guessing.names import ColumnMeaning, column_names, plain, unit_in
 
 _LONG = 5
@@ -27,6 +27,9 @@ def misspelt(name: str) -> tuple[ColumnMeaning, str] | None:
         None where no long name is so near.
     """
     form = plain(unit_in(name)[0])
+    # "measurement_tickness": what stands before the side is no part of its name.
+    words = form.split()
+    form = " ".join(words[1:]) if len(words) == 2 and words[0] in ABOUT else form
     if len(form) < _LONG or ELSEWHERE.intersection(form.split()):
         return None  # "Auteur" is no "hauteur"
     # A key is no misspelt word: "classification_id" is no classification.

@@ -104,7 +104,7 @@ _DISPLAYED = "display "
 _OF_PATH = re.compile(r"__|(?<=[^\W\d_]{2}):(?=[^\W\d_]{3})|\.(?=[^\W\d_]{3}|[^\W\d_]+_)")
 """What parts the names of a path: "location.onView"."""
 
-_STUFF = re.compile(r"mat(?:eri|ier)|werkstoff|malzeme|tworzyw|υλικ|материал|材質|素材|재질")
+_STUFF = re.compile(r"mat(?:eri|ier)|soporte|suporte|werkstoff|malzeme|tworzyw|υλικ|материал|材質|素材|재질")
 _CRAFT = re.compile(r"te(?:ch|k|c|h|hn)ni|τεχνικ|техник|tekniik|技法|기법")
 """Parts of the names of columns that tell what a thing is made of, and how; folded."""
 

@@ -9,7 +9,7 @@ import tomlkit
 from pipeline.collection.display_words import flag_of, says_away
 from pipeline.collection.guessing.columns import Column, internal, untaken
 from pipeline.collection.guessing.fields import ASKED, MOST_WORDS, tells_display
-from pipeline.collection.guessing.names import named, path_of, plain
+from pipeline.collection.guessing.names import called, named, path_of, plain
 from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.places import case_in, parted
 from pipeline.collection.record import CHOICES
@@ -197,6 +197,10 @@ def ways_beside(columns: Sequence[Column], found: Mapping[str, Column], told: Gu
     """
     first = found.get("displayed")
     second = None if first is None or "displayed" in told.choices else _free_to_tell(columns, found)
+    if first is not None and second is None and "displayed" not in told.choices:
+        # "Sala" beside "Ubicación" with "Vitrina 6" and "Jardín": where in the room a thing is.
+        able = (one for one in untaken(columns, found.values()) if called(one.name, "gallery") and not internal(one))
+        second = next((one for one in able if not _of_stores(one) and _tells_ways(one, _SOME_WAYS)), None)
     if first is None or second is None:
         return ()
     told.doubts.append(f"column {second.name!r} is taken to say more of how objects are held, by what it holds")
@@ -242,7 +246,10 @@ def place_of_shown(found: dict[str, Column], told: GuessNotes) -> None:
     if shown is None or not shown.filled:
         return
     known = [flag_of(text, display=True) for text in shown.distinct]
-    if known.count(None) > 0.5 * len(known) and (len(shown.filled) < len(shown.values) or False in known):
+    # "Ausstellung" with the names of exhibitions, which several things share, and no word of a flag among them.
+    exhibitions = set(known) == {None} and _FEWEST < len(known) < len(shown.filled) and not shown.prose
+    gaps = len(shown.filled) < len(shown.values) or False in known
+    if known.count(None) > 0.5 * len(known) and (gaps or exhibitions):
         found["gallery"] = found.pop("on_display")
         told.doubts.append(
             f"column {shown.name!r} is taken to name the place of what is on display, such as "

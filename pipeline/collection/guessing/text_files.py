@@ -15,7 +15,8 @@ from unicodedata import category
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.lexicon import meanings
 from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
-from pipeline.collection.guessing.names import named, outright
+from pipeline.collection.guessing.names import LENGTH, TEXTS, named, outright
+from pipeline.collection.record import units_of
 from pipeline.collection.sources.cards import LABELLED
 from pipeline.collection.sources.delimited import cut_at
 from pipeline.collection.sources.heads import is_of_units, joined_heads
@@ -203,7 +204,10 @@ def first_label(text: str) -> str:
     known = {what.field for label in labels if (what := named(label)) is not None}
     # A record begins with what comes most often and first, which is its number or its name.
     most = max(often[label] for label in labels)
-    return next(label for label in labels if often[label] == most) if len(known) >= _LEAST else ""
+    first = next(label for label in labels if often[label] == most)
+    # No record begins with a size: those are lines within the cells of a table.
+    sized = (what := named(first)) is not None and (what.field in (TEXTS, LENGTH) or bool(units_of(what.field)))
+    return first if len(known) >= _LEAST and not sized else ""
 
 
 def first_lines(text: str, delimiter: str | tuple[int, ...], most: int) -> list[tuple[int, list[str]]]:
@@ -320,7 +324,8 @@ def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
                 break
             names = joined_heads(taken) if many > 1 else cells
             known = len(candidates(columns_of(names, below)))
-            if best is None or known > best.known:
+            # An object may name a field in its cells, "height" or "Hall"; names of columns are no numbers.
+            if best is None or known > best.known + numbers:
                 best = Head(number, many, known)
     if best is not None and best.known > 1:
         at = next(at for at, (number, _) in enumerate(rows) if number == best.row) + best.rows

@@ -58,7 +58,8 @@ def list_in(value: Any, *, alone: bool = True) -> str:
             return ".".join([*path, (named or lists)[0]])
         inner = [name for name, one in value.items() if isinstance(one, dict)]
         within = next((name for name in inner if name in (*_PAGES, *_WRAPPERS)), None)
-        if within is None and len(inner) == len(value) == 1:
+        if within is None and len(inner) == 1 and (len(value) == 1 or _is_page(value[inner[0]])):
+            # {"status": 200, "response": {"rows": [...]}}: what is beside it is of the answer, and of no object.
             within = inner[0]
         if lists or within is None:
             break
@@ -189,6 +190,10 @@ def is_keyed(value: Any) -> bool:
         return False
     often = Counter(name for one in value.values() for name in one)
     return sum(2 * times >= len(value) for times in often.values()) >= _FEWEST
+
+
+def _is_page(value: Mapping[str, Any]) -> bool:
+    return any(name in _PAGES and _is_list_of_objects(one) for name, one in value.items())
 
 
 def _is_list_of_objects(value: Any) -> bool:

@@ -49,6 +49,7 @@ _DELETED = (
 )
 _PART_NAMES = ("part", "element", "component", "name", "label", "title", "type", "elementName", "element_name")
 _IN_PLAN = frozenset(("length", "width", "depth"))
+_SHOWN = frozenset(("label", "value", "order", "isLink"))
 _LITERAL = frozenset(("type", "value", "xml:lang", "datatype"))
 _LITERALS = ("literal", "typed-literal", "uri", "bnode")
 _ADDRESS = re.compile(r"https?://\S+", re.ASCII)
@@ -140,6 +141,9 @@ def flat(record: Mapping[str, Any], unit: str | None = None) -> tuple[dict[str, 
             literal = _literal(value)
             if literal is not None:
                 put(path, as_text(literal))
+                return
+            if path and _is_labelled(value):
+                take(path, value["value"], part)
                 return
             amount = _amount_alone(value) if path else ""
             if amount:
@@ -307,6 +311,12 @@ def _in_part(kind: str, number: str, unit: str, own: str, part: str) -> tuple[st
     if within is not None and known is not None and (within[0] == known or {within[0], known} <= _IN_PLAN):
         return part, number, unit, ""
     return kind, number, unit, part
+
+
+def _is_labelled(value: Mapping[str, Any]) -> bool:
+    """Whether a value stands beside the label that a page has for it: {"label": "Location", "value": "Hall"}."""
+    label = value.get("label")
+    return "value" in value and isinstance(label, str) and value.keys() <= _SHOWN and unit_of(label) is None
 
 
 def _literal(value: Mapping[str, Any]) -> Any:

@@ -15,6 +15,8 @@ _WITHIN = ("element", "term", "type", "definition")
 _LONGEST = 60
 """Characters of the name of a field."""
 _FEWEST = 2
+_LABELS = frozenset(("label", "key", "field", "fieldName", "field_name", "attribute", "attributeName", "property"))
+"""Names of what can be nothing but the name of a field, where a value alone is beside it."""
 
 
 def listed(value: Mapping[str, Any]) -> list[Any] | None:
@@ -27,6 +29,8 @@ def listed(value: Mapping[str, Any]) -> list[Any] | None:
 def pairs_in(entries: Sequence[Any]) -> list[tuple[str, Any]] | None:
     """Return name and value of each entry, where all entries are such pairs and no name comes twice.
 
+    Labels with nothing but a value beside them are pairs in any case: "Dimensions" of the picture and of its frame.
+
     Parameters
     ----------
     entries : sequence of object
@@ -37,12 +41,15 @@ def pairs_in(entries: Sequence[Any]) -> list[tuple[str, Any]] | None:
     list of (str, object) or None
         None where they are anything else: what an object has several of, persons or titles.
     """
-    if len(entries) < _FEWEST or not all(isinstance(one, dict) for one in entries):
+    if not entries or not all(isinstance(one, dict) for one in entries):
+        return None
+    labelled = all(len(one) == _FEWEST and not _LABELS.isdisjoint(one) for one in entries)
+    if len(entries) < _FEWEST and not labelled:
         return None
     value = next((key for key in _VALUES if all(key in one for one in entries)), None)
     able = ([_said(_name(one.get(key))) for one in entries] for key in (*_NAMES, *_WITHIN))
     names = next(filter(all, able), [])
-    if value is None or len({name.casefold() for name in names}) < len(entries):
+    if value is None or not names or (not labelled and len({name.casefold() for name in names}) < len(entries)):
         return None
     return [(name, _plain(one[value])) for name, one in zip(names, entries, strict=True)]
 
