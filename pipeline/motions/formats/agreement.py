@@ -58,6 +58,15 @@ def said_length(lines: Lines, index: int, said: float, count: int, dt: float) ->
         raise lines.error(index, wrong, _REMEDY)
 
 
+def told_length(lines: Lines, index: int, said: float, count: int, dt: float) -> None:
+    """Refuse a record of which a head says a length that another step would give, as `said_length` in its parameters.
+
+    Where it is no more than "Duration" it may be that of the strong part, and another one tells nothing.
+    """
+    if any(abs(said - factor * count * dt) <= 2.5 * factor * dt + 0.01 for factor in MISTAKEN):
+        said_length(lines, index, said, count, dt)
+
+
 def said_time(lines: Lines, index: int, said: float, data: Array, dt: float) -> None:
     """Refuse a record whose header prints a time of the peak at which, by its step, it is not, but by another would be.
 
