@@ -133,7 +133,9 @@ def _uncounted(lines: Lines, top: int) -> Lines:
         last = _COUNTER.search(lines.lines[index])
         if last is None or int(last[1]) != int(first[1]) + index - top:
             return lines
-    return Lines(lines.file, lines.lines[:top] + [_COUNTER.sub(b"", line) for line in lines.lines[top:end]])
+    return Lines(
+        lines.file, lines.lines[:top] + [_COUNTER.sub(b"", line) for line in lines.lines[top:end]], lines.skipped
+    )
 
 
 class _Block:

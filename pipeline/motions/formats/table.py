@@ -107,7 +107,9 @@ def _unquoted(lines: Lines, start: int) -> Lines:
     """The same without the quotes that programs put around every cell."""
     if start >= len(lines) or b'"' not in lines.lines[start]:
         return lines
-    return Lines(lines.file, lines.lines[:start] + [line.replace(b'"', b"") for line in lines.lines[start:]])
+    return Lines(
+        lines.file, lines.lines[:start] + [line.replace(b'"', b"") for line in lines.lines[start:]], lines.skipped
+    )
 
 
 def _with_points(lines: Lines, start: int, separator: bytes | None) -> Lines:
@@ -117,7 +119,9 @@ def _with_points(lines: Lines, start: int, separator: bytes | None) -> Lines:
     first = lines.lines[start]
     if b"." in first or not re.search(rb"\d,\d", first):
         return lines
-    return Lines(lines.file, lines.lines[:start] + [line.replace(b",", b".") for line in lines.lines[start:]])
+    return Lines(
+        lines.file, lines.lines[:start] + [line.replace(b",", b".") for line in lines.lines[start:]], lines.skipped
+    )
 
 
 def _separator(row: bytes) -> bytes | None:

@@ -136,7 +136,7 @@ def _pairs(lines: Lines, index: int, count: int) -> tuple[Array, Array, int]:
         wrong = f"the file ends where line {index + rows} was expected ({count} pairs are announced)"
         raise lines.error(len(lines), wrong, "it is cut off: fetch the file again")
     held = [line[1:] if line[:1] == b" " else b"?" for line in lines.lines[index : index + rows]]
-    shifted = Lines(lines.file, [*lines.lines[:index], *held])
+    shifted = Lines(lines.file, [*lines.lines[:index], *held], lines.skipped)
     values, end = blocks.fixed(shifted, index, 2 * count, 2 * _PAIRS, 7, "time and acceleration")
     return values[::2], values[1::2], end
 

@@ -9,6 +9,7 @@ import pytest
 from pipeline.motions.errors import MotionError
 from pipeline.motions.reading import open_traces
 from tests.motions.formats.specimens import DT, tone
+from tests.motions.test_components import knet
 
 EW, NS, UD = (amplitude * tone() for amplitude in (1.0, 2.0, -0.5))
 T = DT * np.arange(len(EW))
@@ -94,3 +95,19 @@ def test_what_is_wrong_is_said_so_that_it_can_be_mended(tmp_path, text, said):
 
 def test_a_duration_of_the_strong_part_contradicts_nothing(tmp_path):
     assert len(traces(tmp_path, table(f"# Significant duration: 0.37 s\n# Duration: 0.37 s\n{HEAD}"))) == 3
+
+
+def test_blank_lines_before_the_first_are_counted_in_messages(tmp_path):
+    with pytest.raises(MotionError, match=r"line 35: its times go on by 2\.01 s"):
+        traces(tmp_path, "\n \n\t\n" + table(HEAD, (GAP, EW, NS, UD)))
+
+
+@pytest.mark.parametrize("before", ["\ufeff", "\n", " \n\n"])
+def test_knet_behind_a_mark_or_blank_lines_is_no_table_without_a_unit(tmp_path, before):
+    """Its counts would be taken for whatever unit is answered."""
+    knet(tmp_path / "a.EW", "E-W")
+    (tmp_path / "a.EW").write_text(before + (tmp_path / "a.EW").read_text(), encoding="utf-8")
+    with pytest.raises(
+        MotionError, match=r"a header of K-NET that does not begin with .* delete what stands before it"
+    ):
+        open_traces(tmp_path / "a.EW", [])
