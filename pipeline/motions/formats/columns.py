@@ -54,7 +54,7 @@ def is_format(source: Source) -> bool:
     """Whether a source is such numbers, under a head that says their step, or with a time; and no agency's format."""
     text, whole = record_text.first_lines(source)
     # The last line of what was read may be half of one.
-    lines = Lines("", [line.encode("latin-1") for line in text.splitlines()[: None if whole else -1]])
+    lines = Lines("", [line.encode("latin-1") for line in record_text.parted(text)[: None if whole else -1]])
     top = _top(lines)
     if top is None or len(lines) - top < _LEAST_ROWS:
         return False

@@ -46,7 +46,7 @@ _STAGES = {"raw": "V0", "uncorrected": "V1", "corrected": "V2"}
 
 def is_format(source: Source) -> bool:
     """Whether a source is a COSMOS file, from its first line and its integer header."""
-    lines = record_text.head(source).splitlines()
+    lines = record_text.parted(record_text.head(source))
     title = _TITLE.search(lines[0]) if lines else None
     return title is not None and any(_HEADER.search(line) for line in lines[: int(title[3]) + 2])
 

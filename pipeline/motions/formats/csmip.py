@@ -61,7 +61,7 @@ _UNITS = {"g": "g", "cm/sec/sec": "cm/s2", "cm/sec2": "cm/s2", "cm/sec**2": "cm/
 
 def is_format(source: Source) -> bool:
     """Whether a source is a CSMIP file of volume 1 or 2, from its first channel's header; of volume 3, to say so."""
-    lines = record_text.head(source).splitlines()
+    lines = record_text.parted(record_text.head(source))
     if lines and _SPECTRA.search(lines[0]):
         return True
     # GeoNet and COSMOS open alike; both say who they are in the same line.

@@ -33,7 +33,7 @@ _SIZE = re.compile(r"\bM([WSLBD])?\s+\d{1,2}\.\d", re.IGNORECASE)
 
 def is_format(source: Source) -> bool:
     """Whether a source is a GeoNet V1A or V2A file, from its first two lines."""
-    lines = record_text.head(source).splitlines()[:2]
+    lines = record_text.parted(record_text.head(source))[:2]
     return len(lines) == 2 and bool(_TITLE.search(lines[0])) and bool(_SITE.search(lines[1]))
 
 

@@ -28,7 +28,8 @@ _STEP = _label(
     r"time (?:increment|step|interval)|(?:sampling|sample) (?:interval|period|step)|delta(?: ?t)?|dt|"
     r"intervalo de muestreo|paso de tiempo|intervallo di campionamento|passo di campionamento|"
     r"pas (?:de temps|d'.{1,2}chantillonnage)|abtastintervall|zeitschritt|"
-    r".rnekleme aral...|zaman ad.m.|采样间隔|时间间隔|サンプリング間隔|шаг(?: по времени| дискретизации)?",
+    r".rnekleme aral...|zaman ad.m.|采样间隔|时间间隔|サンプリング間隔|шаг(?: по времени| дискретизации)?|"
+    r"pas(?:ul)? (?:de|in) timp|βήμα(?: χρόνου)?|χρονικό βήμα",
     rf"{_NUMBER}\s*([a-z]{{1,8}})?",
 )
 _STEP_BARE = re.compile(
@@ -48,10 +49,14 @@ _RATE = _label(
 _COUNT = _label(
     r"(?:number|no\.?) of (?:data|points|samples|values)|npts|ndata|(?:num_?)?samples|sample[ _]count|"
     r"n.{1,2}mero de (?:muestras|datos|puntos)|numero (?:di )?(?:dati|campioni|punti)|"
-    r"nombre de points|anzahl (?:der )?werte",
+    r"nombre de points|anzahl (?:der )?werte|num.{1,2}r(?:ul)? de (?:puncte|valori)|αριθμός (?:σημείων|τιμών)",
     r"(\d{1,9})(?![.\d])",
 )
-_UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit|birim|单位|単位|единицы(?: измерения)?", r"(\S.*)")
+_UNIT = _label(
+    r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|"
+    r"unit.{1,2}[tțţ]i|μονάδ(?:α|ες)|einheit|birim|单位|単位|единицы(?: измерения)?",
+    r"(\S.*)",
+)
 _ACCELERATION = r"\b(?:accel\w*|acc.l.ration\w*|acel\w*|beschleunigung\w*|ivme\w*|ускорени\w*)\b"
 _IN = re.compile(
     rf"(?:(?:{_ACCELERATION}|\bacc\b).{{0,40}}?|\bdata )\b(?:in|en|em) (?:units of )?"
@@ -435,8 +440,9 @@ def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:
         head.says(lines, index, "step", 1.0 / float(found[1]))
     if found := _COUNT.search(text):
         head.says(lines, index, "count", int(found[2]))
-    if (found := _LENGTH.search(text)) and float(found[2]) > 0.0:
-        head.says(lines, index, "length", float(found[2]))
+    if (found := _LENGTH.search(text)) and head.length is None and float(found[2]) > 0.0:
+        # Two durations contradict nothing: that of the record, and of its strong part.
+        head.length, head.at["length"] = float(found[2]), index
     if found := _PER_ROW.search(text):
         head.per_row = int(found[1] or found[2])
     if (found := _PEAK.search(text)) and (unit := unit_of(found[1] or found[3] or ""))[0] == "acceleration":

@@ -186,6 +186,11 @@ def first_lines(source: Source) -> tuple[str, bool]:
     return _unpadded(_plain(raw)).decode("latin-1"), len(raw) < HEAD
 
 
+def parted(text: str) -> list[str]:
+    """Return the lines of a text of `head`: its letters may hold bytes that str.splitlines takes for line ends."""
+    return text.removesuffix("\n").split("\n") if text else []
+
+
 def _plain(raw: bytes) -> bytes:
     """A text without the mark that editors put before UTF-8, and with one kind of line ends."""
     return raw.removeprefix(codecs.BOM_UTF8).replace(b"\r\n", b"\n").replace(b"\r", b"\n")

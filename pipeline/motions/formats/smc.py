@@ -36,7 +36,7 @@ _PRECISE = 8
 
 def is_format(source: Source) -> bool:
     """Whether a source is an SMC file, from its first line and its integer header."""
-    lines = record_text.head(source).splitlines()
+    lines = record_text.parted(record_text.head(source))
     if len(lines) < _TEXT + _INTEGER_LINES or not _TITLE.search(lines[0]):
         return False
     return all(_INTEGERS.match(line.rstrip().ljust(80)) for line in lines[_TEXT : _TEXT + _INTEGER_LINES])

@@ -47,7 +47,7 @@ def is_format(source: Source) -> bool:
     """
     if nied.is_format(source):
         return True
-    rows = record_text.head(source).splitlines()[:_MOST_COMMENTS]
+    rows = record_text.parted(record_text.head(source))[:_MOST_COMMENTS]
     for index, line in enumerate(rows):
         if line.strip() and not line.startswith("#"):
             cells = _cells(line.encode("latin-1"))

@@ -30,7 +30,7 @@ _MOST_LINES = 300
 
 def is_format(source: Source) -> bool:
     """Whether a source is an ASA file, from its title."""
-    return any(line.startswith(_TITLE) for line in record_text.head(source).splitlines()[:12])
+    return any(line.startswith(_TITLE) for line in record_text.parted(record_text.head(source))[:12])
 
 
 def _traces(lines: Lines, headonly: bool) -> list[Any]:

@@ -28,7 +28,7 @@ _DIGIT = 0.001
 
 def is_format(source: Source) -> bool:
     """Whether a source is a volume 1 of pairs, from its first channel's header."""
-    lines = record_text.head(source).splitlines()[:_TEXT]
+    lines = record_text.parted(record_text.head(source))[:_TEXT]
     return (
         len(lines) == _TEXT
         and bool(_TITLE.search(lines[0]) and _POINTS.search(lines[_AT_POINTS]) and _UNITS.search(lines[_AT_UNITS]))

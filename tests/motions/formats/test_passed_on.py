@@ -49,6 +49,22 @@ def test_heads_of_more_languages_and_spellings(tmp_path, head, separator):
         assert trace.stats.delta == pytest.approx(DT)
 
 
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Pas de timp (s): {dt}\nNumar de puncte: {n}\nUnitati: cm/s2\nComponenta: E-V",
+        "Pas de timp (s): {dt}\nNumărul de puncte: {n}\nUnități: cm/s2\nComponenta: E-V",
+        "Βήμα χρόνου (s): {dt}\nΑριθμός σημείων: {n}\nΜονάδες: cm/s2",
+    ],
+)
+def test_one_series_over_rows_under_a_head_of_romania_or_greece(tmp_path, head):
+    rows = [" ".join(f"{100 * a:9.3f}" for a in EW[i : i + 8]) for i in range(0, len(EW), 8)]
+    (trace,) = traces(tmp_path, "\n".join([head.format(dt=DT, n=len(EW)), *rows, ""]))
+    assert trace.stats.delta == pytest.approx(DT)
+    assert trace.stats.kouros.si_factor * trace.data == pytest.approx(EW, abs=6e-6)
+    assert trace.stats.kouros.orientation in {90.0, None}
+
+
 def test_exponents_of_double_precision(tmp_path):
     found = traces(tmp_path, table(HEAD, form="%.9E").replace("E+", "D+").replace("E-", "D-"))
     assert found[1].data == pytest.approx(NS, rel=1e-9)
@@ -94,7 +110,7 @@ def test_what_is_wrong_is_said_so_that_it_can_be_mended(tmp_path, text, said):
 
 
 def test_a_duration_of_the_strong_part_contradicts_nothing(tmp_path):
-    assert len(traces(tmp_path, table(f"# Significant duration: 0.37 s\n# Duration: 0.37 s\n{HEAD}"))) == 3
+    assert len(traces(tmp_path, table(f"# Duration: 0.37 s\n# Duration: 0.6 s\n# Length: 23 km\n{HEAD}"))) == 3
 
 
 def test_blank_lines_before_the_first_are_counted_in_messages(tmp_path):
