@@ -31,6 +31,12 @@ ODD_ONE = ", as hardly any earthquake makes them: one of them may be in another 
 TOO_QUICK = ": so little for its acceleration as an earthquake seldom has; look at its time step and its unit"
 """Ends what is said of a record whose PGV is small for its PGA."""
 
+UNLIKE = (
+    "; see whether its unit, magnitude and distance are right: --unit of `kouros motions add`, or units, scale, event "
+    "and distance_km in the manifest"
+)
+"""Ends what is said of a record that is far stronger or weaker than its magnitude and distance let expect."""
+
 SENSITIVITY_ALONE = (
     ", which has no response: what the instrument does to the highest and lowest frequencies stays "
     "(level=response has it)"
@@ -72,7 +78,7 @@ def doubts(steps: Sequence[str]) -> tuple[str, ...]:
             step.startswith(MAY_HOLD)
             or ALL_USED in step
             or DRIFTS in step
-            or step.endswith((NO_RECORD, ALIKE, ODD_ONE, TOO_QUICK, TOO_COARSE))
+            or step.endswith((NO_RECORD, ALIKE, ODD_ONE, TOO_QUICK, TOO_COARSE, UNLIKE))
         ):
             found.append(step)
         elif FACTOR in step:

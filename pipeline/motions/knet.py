@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import glob
+import re
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from pipeline.motions.unknown import unknown
 
 _DIRECTIONS: dict[str, Orientation] = {"NS": 0.0, "EW": 90.0, "UD": "up"}
 _GAL = 0.01
+_KNET = re.compile(rb"(?:\xef\xbb\xbf)?\s*origin time.{0,1500}\bscale factor\s+\d", re.IGNORECASE | re.DOTALL)
 
 
 def really(file: Path, stream: Any) -> Any:
@@ -39,6 +41,12 @@ def really(file: Path, stream: Any) -> Any:
     MotionError
         Of a file that is none of K-NET, and says too little.
     """
+    if stream and stream[0].stats._format == "MOTION_COLUMNS":
+        with file.open("rb") as text:
+            first = text.read(2000)
+        if _KNET.match(first):
+            wrong = "has a header of K-NET that does not begin with 'Origin Time': a mark, blanks or other letters do"
+            raise refusal(file, "file", wrong, "delete what stands before it, or fetch the file again")
     if not stream or stream[0].stats._format != "KNET" or "knet" in stream[0].stats:
         return stream
     with file.open("rb") as text:

@@ -19,7 +19,7 @@ from pipeline.motions.grouping import FileTrace, channels, grouped
 from pipeline.motions.own_facts import own_event, own_station
 from pipeline.motions.reading import UNITS, own_unit
 from pipeline.motions.record import EventTable, Record, StationTable
-from pipeline.motions.safe_names import one_line, safe_name
+from pipeline.motions.safe_names import free_name, one_line, safe_name
 from pipeline.motions.station_metadata import depth, has_response, metadata, sac_direction
 from pipeline.quantities import counted
 
@@ -228,7 +228,7 @@ class _Making:
         files = dict(self.local)
         table: dict[str, Any] = {"name": name, "files": tuple(files), "components": components}
         if response is not None:
-            table["response"] = _free(safe_name(response.name), files)
+            table["response"] = free_name(safe_name(response.name), files)
             files[table["response"]] = response
             if is_velocity(self.traces):
                 if full := saturated(self.traces):
@@ -278,12 +278,14 @@ class _Making:
         silent = [one for one in self.traces if self._silent(one[1])]
         if not silent or self._answer(self.answers.units, plain=False):
             return None
+        # Of what is called processed the instrument was removed: a response would remove it again.
+        done = self._answer(self.answers.processed, plain=True)
         partly = []
         for path, inventory in self.found.catalogues.inventories.items():
             known = [has_response(inventory, trace) for _, trace in self.traces]
-            if all(known):
+            if all(known) and not done:
                 return path
-            if any(known):
+            if any(known) and not done:
                 partly.append(path.name)
         if self.answers.units.get(""):
             return None
@@ -292,6 +294,8 @@ class _Making:
         text = "No file says the unit of its samples"
         if word := stats.get("kouros", {}).get("unit_said"):
             text = f"Its file says {one_line(word)!r} for the unit, which is none that is known: say what one of it is"
+        elif done and self.found.catalogues.inventories:
+            text += ": what is processed has no response left that a StationXML could remove; say the unit, or --raw"
         elif what != "?" or stats.network:
             text += "" if what == "?" else f", which {what}"
             text += f": give the station's StationXML (level=response, network {stats.network or '?'}, station "
@@ -490,11 +494,5 @@ def _local(paths: Sequence[Path]) -> dict[str, Path]:
     """Names for files in one folder: their own, where that is no trap and not taken."""
     made: dict[str, Path] = {}
     for path in paths:
-        made[_free(safe_name(path.name), made)] = path
+        made[free_name(safe_name(path.name), made)] = path
     return made
-
-
-def _free(name: str, taken: Mapping[str, Any]) -> str:
-    lower = {one.casefold() for one in taken}
-    numbered = (name if n == 1 else f"{n}-{name}" for n in range(1, len(lower) + 3))
-    return next(one for one in numbered if one.casefold() not in lower)

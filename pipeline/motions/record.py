@@ -180,8 +180,9 @@ class Record(Table):
     origin_time: of the earthquake, in UTC, where the files hold more than one: from it window_s is counted; without
                  window_s it is that of the earthquake found there
     start_m_s  : of a processed record, the velocity in m/s that x, y and z begin with, which the samples do not tell
-    event, station, distance_km : the earthquake, the station, and how far from each other they are; nothing is computed
-                 of these.  The distance is the epicentral one, or as the record's source gives it
+    event, station, distance_km : the earthquake, the station, and how far from each other they are: PGA and PGV are
+                 held against what these let expect, and nothing else is computed of them.  The distance is the
+                 epicentral one, or as the record's source gives it
     accept     : refusals that a person has judged and overruled, each with the reason
     sha256     : of every file named, the response included
     """

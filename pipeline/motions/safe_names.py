@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Iterable
 
 _LONGEST = 120
 
@@ -32,3 +33,10 @@ def safe_name(name: str) -> str:
 def one_line(text: str) -> str:
     """Return words in one line of at most 200 characters, without what steers a terminal."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:200]
+
+
+def free_name(name: str, taken: Iterable[str]) -> str:
+    """Return a file's name that is not among those taken, whatever their case: with a number before it, where it is."""
+    lower = {one.casefold() for one in taken}
+    numbered = (name if n == 1 else f"{n}-{name}" for n in range(1, len(lower) + 3))
+    return next(one for one in numbered if one.casefold() not in lower)

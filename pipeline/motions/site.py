@@ -19,6 +19,7 @@ from pipeline.motions.errors import Judgement, MotionError, judged, refusal
 from pipeline.motions.filtering import remove_baseline
 from pipeline.motions.hazard_file import read_hazard
 from pipeline.motions.intensity import integrate, measures
+from pipeline.motions.likeness import unlike
 from pipeline.motions.manifest import (
     GROUND_FLOOR,
     LEAST_FOR_MEAN,
@@ -484,6 +485,9 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
     if doubt := doubt_motion(unscaled, velocity=velocity, processed=recording.processed):
         ask(doubt.judgement, doubt.wrong, doubt.remedy)
     steps += filter(None, (quick(unscaled),))
+    # A floor of a building is shaken as no ground is.
+    if not key.startswith("floor[") and (said := unlike(unscaled, velocity, record)):
+        steps.append(said)
     return replace(done, motion=done.motion.called(record.name, *steps)) if steps else done
 
 

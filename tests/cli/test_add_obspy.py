@@ -178,3 +178,23 @@ def test_the_sensitivity_of_a_velocity_sensor_is_no_response(tmp_path: Path) -> 
     sensitivity_alone(new / "CI.CLC.xml", "M/S")
     code, out = say(tmp_path, "add", "new", "--site", "mine", "--no-compare")
     assert (code, "level=response" in out) == (2, True), out
+
+
+def test_what_is_processed_keeps_its_unit_beside_a_stationxml(tmp_path: Path, real: list[obspy.Trace]) -> None:
+    """A response that was removed already is not removed again; who does not say the unit is asked for it."""
+    new = tmp_path / "new"
+    new.mkdir()
+    for one in real:
+        one.write(str(new / f"{one.id}.mseed"), format="MSEED")
+    (new / "CI.CLC.xml").write_bytes((DEMO / "CI.CLC.xml").read_bytes())
+    code, out = say(tmp_path, "add", "new", "--site", "mine", "--no-compare", "--processed")
+    assert code == 2, out
+    assert "what is processed has no response left that a StationXML could remove; say the unit" in " ".join(
+        out.split()
+    )
+    code, out = say(tmp_path, "add", "new", "--site", "mine", "--no-compare", *SAID, "--accept", "an excerpt")
+    assert code == 0, out
+    record = load_manifest(tmp_path / "mine").level[0].record[0]
+    assert record.response is None
+    found = read_record(tmp_path / "mine", record)
+    assert found.data[0] == pytest.approx(real[0].data.astype(float), rel=1e-6)

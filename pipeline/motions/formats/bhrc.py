@@ -29,7 +29,7 @@ _TEXT, _HEADERS = 13, 14
 
 def is_format(source: Source) -> bool:
     """Whether a source is a BHRC file, from its first lines."""
-    lines = record_text.head(source).splitlines()[:_TEXT]
+    lines = record_text.parted(record_text.head(source))[:_TEXT]
     return len(lines) == _TEXT and bool(_TITLE.search(lines[0])) and lines[6].startswith("COMP")
 
 

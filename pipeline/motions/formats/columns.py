@@ -21,6 +21,7 @@ import numpy as np
 
 from pipeline.motions.doubts import FACTOR
 from pipeline.motions.formats import blocks, header_facts, irregular, labels, record_text, trace_headers, unit_words
+from pipeline.motions.formats.agreement import told_length
 from pipeline.motions.formats.labels import HeadColumn, RecordHead
 from pipeline.motions.formats.record_text import FormatError, Lines, Source, shown
 from pipeline.quantities import Array
@@ -53,7 +54,7 @@ def is_format(source: Source) -> bool:
     """Whether a source is such numbers, under a head that says their step, or with a time; and no agency's format."""
     text, whole = record_text.first_lines(source)
     # The last line of what was read may be half of one.
-    lines = Lines("", [line.encode("latin-1") for line in text.splitlines()[: None if whole else -1]])
+    lines = Lines("", [line.encode("latin-1") for line in record_text.parted(text)[: None if whole else -1]])
     top = _top(lines)
     if top is None or len(lines) - top < _LEAST_ROWS:
         return False
@@ -132,7 +133,9 @@ def _uncounted(lines: Lines, top: int) -> Lines:
         last = _COUNTER.search(lines.lines[index])
         if last is None or int(last[1]) != int(first[1]) + index - top:
             return lines
-    return Lines(lines.file, lines.lines[:top] + [_COUNTER.sub(b"", line) for line in lines.lines[top:end]])
+    return Lines(
+        lines.file, lines.lines[:top] + [_COUNTER.sub(b"", line) for line in lines.lines[top:end]], lines.skipped
+    )
 
 
 class _Block:
@@ -314,10 +317,8 @@ def _clocked(lines: Lines, start: int, form: tuple[str | None, bool], head: Reco
     times -= times[0]
     dt = irregular.even_step(times, _digit([one[6] for one in stamps[:20]]))
     if dt is None:
-        steps = np.diff(times)
-        worst = int(np.argmax(np.abs(steps - np.median(steps)))) + 1
-        wrong = f"its clock goes on by {steps[worst - 1]:.6g} s, and by {np.median(steps):.6g} s elsewhere"
-        raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
+        worst, wrong, remedy = irregular.off_step(times)
+        raise lines.error(start + worst, wrong, remedy)
     head.says(lines, start, "step", dt)
     # Without a Z nobody knows whose clock it is.
     if stamps[0][7] and stamps[0][1] and head.start is None:
@@ -378,6 +379,8 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     count, width = block.data.shape
     if head.count is not None:
         trace_headers.said_count(lines, head.at["count"], head.count, count)
+    if head.length is not None:
+        told_length(lines, head.at["length"], head.length, count, dt)
     if head.kind == "acceleration":
         trace_headers.said_unit(lines, head.at["unit"], head.unit, [one.unit for one in block.columns])
     if not block.columns and width > _BARE - 1:
@@ -470,10 +473,8 @@ def _step(lines: Lines, start: int, block: _Block) -> float:
     times = block.times * (unit_words.seconds(head.columns[0].unit) if head.columns else 1.0)
     dt = irregular.even_step(times, _digit(first))
     if dt is None:
-        steps = np.diff(times)
-        worst = int(np.argmax(np.abs(steps - np.median(steps)))) + 1
-        wrong = f"time {times[worst]:g} s is off the even step of {np.median(steps):g} s"
-        raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
+        worst, wrong, remedy = irregular.off_step(times)
+        raise lines.error(start + worst, wrong, remedy)
     if dt == 1.0 and not head.columns and (np.mod(times, 1.0) == 0.0).all():
         # No accelerograph takes one sample a second.
         raise lines.error(

@@ -11,7 +11,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
+import numpy as np
+
+from pipeline.motions.formats import agreement, blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import Lines, Source
 from pipeline.motions.formats.trace_headers import Orientation, Series
 from pipeline.quantities import Array
@@ -44,7 +46,7 @@ _STAGES = {"raw": "V0", "uncorrected": "V1", "corrected": "V2"}
 
 def is_format(source: Source) -> bool:
     """Whether a source is a COSMOS file, from its first line and its integer header."""
-    lines = record_text.head(source).splitlines()
+    lines = record_text.parted(record_text.head(source))
     title = _TITLE.search(lines[0]) if lines else None
     return title is not None and any(_HEADER.search(line) for line in lines[: int(title[3]) + 2])
 
@@ -96,6 +98,9 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
         raise lines.error(first, f"{unit} is no code of a unit of acceleration", "see table 2 of the format")
     units = _UNITS[unit]
     factor = _sensitivity(reals, absent[1]) if units == "counts" else trace_headers.FACTORS[units]
+    _hold(lines, at_reals, reals, absent[1], values, dt)
+    if "velocity" in more and factor is not None:
+        agreement.own_velocity(lines, at_reals, factor * values, np.asarray(more["velocity"]), dt)
     known = all(integers[i] != absent[0] for i in (39, 41, 42, 43, 44)) and reals[29] != absent[1]
     when = [*(integers[i] for i in (39, 41, 42, 43, 44)), reals[29]]
     notes = ["si_factor from the header: bit, gain and sensitivity"] if units == "counts" else []
@@ -123,6 +128,15 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
     )
     traces.append(trace)
     return index + 1
+
+
+def _hold(lines: Lines, index: int, reals: Array, absent: float, values: Array, dt: float) -> None:
+    """Hold a channel against the length, the peak and its time that the real header says."""
+    length, peak, time = (0.0 if reals[i] == absent else float(reals[i]) for i in (62, 63, 64))
+    agreement.said_length(lines, index, length, len(values), dt)
+    trace_headers.said_peak(lines, index, peak, 0.0, values, 1.0, "reading")
+    if peak:
+        agreement.said_time(lines, index, time, values, dt)
 
 
 def _header(lines: Lines, index: int, kind: str) -> tuple[Array, int]:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
+from pipeline.motions.formats import agreement, blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import NUMBER, Lines, Source
 from pipeline.motions.formats.trace_headers import Series
 from pipeline.quantities import Array
@@ -40,6 +40,8 @@ _PEAKS = {
 }
 _PEAK_UNITS = {"acceleration": "cm/sec/sec", "velocity": "cm/sec", "displacement": "cm"}
 _UNCORRECTED_PEAK = re.compile(rf"\bmax\s*=\s*({NUMBER})\s*g\b", re.IGNORECASE)
+_AT = re.compile(r"\bat\s+(\d{1,5}\.\d{0,4})\s+sec", re.IGNORECASE)
+_RECORD_LENGTH = re.compile(r"\brecord length\s*=\s*(\d{1,5}\.\d{0,4})\s*sec", re.IGNORECASE)
 _TIME = re.compile(
     r"(?:start|trigger)\s+time:\s*(\d{1,2})[/-](\d{1,2})[/-](\d{4}|\d\d),?\s*"
     rf"(\d{{1,2}}):\s?(\d{{1,2}}):{header_facts.SECONDS}\s*(UTC|GMT|P[SD]T)",
@@ -59,7 +61,7 @@ _UNITS = {"g": "g", "cm/sec/sec": "cm/s2", "cm/sec2": "cm/s2", "cm/sec**2": "cm/
 
 def is_format(source: Source) -> bool:
     """Whether a source is a CSMIP file of volume 1 or 2, from its first channel's header; of volume 3, to say so."""
-    lines = record_text.head(source).splitlines()
+    lines = record_text.parted(record_text.head(source))
     if lines and _SPECTRA.search(lines[0]):
         return True
     # GeoNet and COSMOS open alike; both say who they are in the same line.
@@ -122,11 +124,9 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         about = {key: value for key, value in about.items() if key not in {"latitude", "longitude"}}
     when, start_is = started(lines, top, text)
     peaks = _peaks(text, volume)
-    if peaks["acceleration"] is not None:
-        at = next(i for i, line in enumerate(text) if _peak_pattern(volume).search(line))
-        digit = 0.001 * (trace_headers.FACTORS["g"] if volume == 1 else 0.01)
-        factor = trace_headers.FACTORS[unit]
-        trace_headers.said_peak(lines, top + at, peaks["acceleration"], digit, series["acceleration"], factor)
+    _hold(
+        lines, top, text, volume, {**series, "acceleration": trace_headers.FACTORS[unit] * series["acceleration"]}, dt
+    )
     trace = trace_headers.make_trace(
         lines,
         data=series["acceleration"],
@@ -289,8 +289,26 @@ def started(lines: Lines, top: int, text: list[str]) -> tuple[Any, str]:
     return (None, "unknown") if when is None else (when, "earthquake")
 
 
-def _peak_pattern(volume: int) -> re.Pattern[str]:
-    return _UNCORRECTED_PEAK if volume == 1 else _PEAKS["acceleration"]
+def _peak_pattern(volume: int, kind: str = "acceleration") -> re.Pattern[str]:
+    return _UNCORRECTED_PEAK if volume == 1 else _PEAKS[kind]
+
+
+def _hold(lines: Lines, top: int, text: list[str], volume: int, series: dict[str, Array], dt: float) -> None:
+    """Hold a channel in SI against its peaks, the time of its strongest acceleration, and its own velocity."""
+    for kind, values in series.items():
+        for at, line in enumerate(text, start=top):
+            if found := _peak_pattern(volume, kind).search(line):
+                unit = trace_headers.FACTORS["g"] if volume == 1 else 0.01
+                trace_headers.said_peak(lines, at, unit * float(found[1]), 0.001 * unit, values, 1.0, kind)
+                if kind == "acceleration" and (time := _AT.search(line[found.end() :])):
+                    agreement.said_time(lines, at, float(time[1]), values, dt)
+                break
+    if volume == 1:
+        for at, line in enumerate(text, start=top):
+            if found := _RECORD_LENGTH.search(line):
+                agreement.said_length(lines, at, float(found[1]), len(series["acceleration"]), dt)
+    if "velocity" in series:
+        agreement.own_velocity(lines, top, series["acceleration"], series["velocity"], dt)
 
 
 def _peaks(text: list[str], volume: int) -> dict[str, float | None]:

@@ -29,7 +29,7 @@ _MOST_LINES = 40
 
 def is_format(source: Source) -> bool:
     """Whether a source is a CSMNC file, from its header."""
-    lines = record_text.head(source).splitlines()[:_MOST_LINES]
+    lines = record_text.parted(record_text.head(source))[:_MOST_LINES]
     return any(_POINTS.match(line) for line in lines) and any(_KIND.match(line) for line in lines)
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
+from pipeline.motions.formats import agreement, blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import Keys, Lines, Source
 
 _KEY = re.compile(r"^([A-Z][A-Z0-9_/^]{1,59}):(.*)$")
@@ -64,6 +64,12 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     if peak:
         digit = 0.01 * 10.0 ** -len(peak.partition(".")[2])
         trace_headers.said_peak(lines, at, 0.01 * _number(lines, at, peak), digit, data, trace_headers.FACTORS[unit])
+    at_length, length = keys.get("DURATION_S", (0, ""))
+    if length:
+        agreement.said_length(lines, at_length, _number(lines, at_length, length), count, dt)
+    at_time, time = keys.get("TIME_PGA_S", (0, ""))
+    if time and peak:
+        agreement.said_time(lines, at_time, _number(lines, at_time, time), data, dt)
     channel, direction, how = _channel(keys, dt)
     # A code of two letters in ESM; in the files of AFAD the name of the place.
     place = keys.get("LOCATION", (0, ""))[1]

@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
+from pipeline.motions.formats import agreement, blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import NUMBER, Lines, Source
 from pipeline.motions.formats.trace_headers import Series
 from pipeline.quantities import Array
@@ -22,7 +22,8 @@ _POINTS = re.compile(r"Number of points\s+(\d{1,8})")
 _CORRECTED = re.compile(r"corrected data at\s+(\d{0,3}\.\d{1,6}) sec intervals", re.IGNORECASE)
 _RAW = re.compile(r"readings in units of\s+(\d{0,4}\.\d{1,6}) mm/s/s\s+at intervals of\s+(\d{0,3}\.\d{1,6}) s", re.I)
 _COMPONENT = re.compile(r"^Component\s+(\S+(?:\s?\d\d?[EW]\b)?)")
-_PEAK = re.compile(rf"peak\s+({NUMBER}) (mm/s/s|mm/s|mm)\b", re.IGNORECASE)
+_PEAK = re.compile(rf"peak\s+({NUMBER}) (mm/s/s|mm/s|mm)\b(?:\s+at\s+(\d{{1,5}}\.\d{{0,3}}) sec)?", re.IGNORECASE)
+_DURATION = re.compile(r"Duration\s+(\d{1,5}(?:\.\d{0,4})?) sec")
 _HEADER = 26
 _HALVES = re.compile(r"\b\d{1,2} ?\d{1,2} ?\d{1,2}(?:\.\d*)?([NS])\s+\d{1,3} ?\d{1,2} ?\d{1,2}(?:\.\d*)?([EW])")
 _DISTANCE = re.compile(r"\bDist\s+(\d{1,5}(?:\.\d*)?)\s?km", re.IGNORECASE)
@@ -32,7 +33,7 @@ _SIZE = re.compile(r"\bM([WSLBD])?\s+\d{1,2}\.\d", re.IGNORECASE)
 
 def is_format(source: Source) -> bool:
     """Whether a source is a GeoNet V1A or V2A file, from its first two lines."""
-    lines = record_text.head(source).splitlines()[:2]
+    lines = record_text.parted(record_text.head(source))[:2]
     return len(lines) == 2 and bool(_TITLE.search(lines[0])) and bool(_SITE.search(lines[1]))
 
 
@@ -73,6 +74,12 @@ def _component(lines: Lines, top: int, number: int, headonly: bool) -> tuple[Any
     for what, count in zip(("acceleration", "velocity", "displacement"), counts, strict=True):
         if count:
             series[what], index = blocks.fixed(lines, index, points, 10, 8, what)
+    if said := _DURATION.search(lines.text(top + 9)):
+        agreement.said_length(lines, top + 9, float(said[1]), points, dt)
+    for at, (what, values) in enumerate(series.items(), start=top + 13):
+        _hold(lines, at, what, (scale if what == "acceleration" else 1.0) * values, dt)
+    if "velocity" in series:
+        agreement.own_velocity(lines, top + 10, scale * series["acceleration"], series["velocity"], dt)
     start = [integers[8], integers[9], integers[18], integers[19], integers[38], integers[39] / 1000.0]
     trace = trace_headers.make_trace(
         lines,
@@ -120,6 +127,15 @@ def _about(lines: Lines, top: int, integers: Array, reals: Array) -> dict[str, A
 def _peak(lines: Lines, index: int) -> float | None:
     found = _PEAK.search(lines.text(index))
     return None if found is None else 0.001 * float(found[1])
+
+
+def _hold(lines: Lines, index: int, what: str, values: Array, dt: float) -> None:
+    """Hold a series in mm and seconds against the line of its peak."""
+    if found := _PEAK.search(lines.text(index)):
+        digit = 0.001 * 10.0 ** -len(found[1].partition(".")[2])
+        trace_headers.said_peak(lines, index, 0.001 * float(found[1]), digit, values, 0.001, what)
+        if found[3]:
+            agreement.said_time(lines, index, float(found[3]), values, dt)
 
 
 read_format = record_text.reader(_traces)

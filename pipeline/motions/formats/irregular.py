@@ -12,6 +12,9 @@ RESAMPLED = 0.005
 """Step in s that irregular pairs are resampled onto, unless the caller asks for another: the USGS's own choice for the
 corrected version of such records."""
 
+_NO_TIME = 0.1
+"""Share of steps back from which on a column is no time (judgement): accelerations go back at half of their steps."""
+
 
 def resampled(lines: Lines, index: int, per_line: int, times: Array, data: Array, dt: float) -> tuple[Array, str]:
     """Return the samples at equal steps, linearly between those that were digitised.
@@ -76,6 +79,48 @@ def rounding(digit: float, dt: float, times: Array) -> Array:
     six = 0.51e-5 * 10.0 ** np.floor(np.log10(np.maximum(np.abs(times), 1e-9)))
     coarse = 0.51 * digit if digit <= 2.01 * dt else 0.0
     return np.maximum(np.minimum(np.maximum(1.02 * digit, six), 0.2 * dt), coarse)
+
+
+def off_step(times: Array) -> tuple[int, str, str]:
+    """Say where times go on by another step than elsewhere.
+
+    Parameters
+    ----------
+    times : array, shape (n,)
+        In s, as `even_step` does not take them.
+
+    Returns
+    -------
+    int
+        The row of the time that is off, from 0.
+    str
+        What is wrong.
+    str
+        What mends it.
+    """
+    steps = np.diff(times)
+    usual = float(np.median(steps))
+    worst = int(np.argmax(np.abs(steps - usual))) + 1
+    step, told = (
+        float(steps[worst - 1]),
+        f"its times go on by {{:.6g}} s to {times[worst]:g} s, and by {usual:.6g} s elsewhere",
+    )
+    if (steps < 0.0).mean() > _NO_TIME:
+        wrong = "its first column goes back and forth, as no time does"
+        return (
+            worst,
+            wrong,
+            "name the columns: kouros motions convert FILE --columns ns,ew,ud --dt 0.01 --unit g --out FOLDER",
+        )
+    if usual > 0.0 and step > 1.5 * usual:
+        return worst, told.format(step), "samples are missing: give the record without the gap, or its longer part"
+    if usual <= 0.0:
+        worst = int(np.argmin(steps)) + 1
+        wrong = f"it and {int((steps <= 0.0).sum()) - 1} rows more have the time of the row before them"
+        return worst, wrong, "rows came twice, or times are rounded too far: give equal time steps"
+    if step <= 0.0:
+        return worst, told.format(step), "rows came twice, or their times are rounded too far: give equal time steps"
+    return worst, told.format(step), "give equal time steps: resample the record first"
 
 
 def even_step(times: Array, digit: float) -> float | None:

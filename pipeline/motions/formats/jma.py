@@ -24,7 +24,7 @@ _MOST_KEYS = 20
 
 def is_format(source: Source) -> bool:
     """Whether a source is a JMA file, from its keys."""
-    lines = record_text.head(source).splitlines()[:_MOST_KEYS]
+    lines = record_text.parted(record_text.head(source))[:_MOST_KEYS]
     keys = {found[1].upper() for line in lines if (found := _KEY.match(line))}
     return bool(lines) and lines[0].lstrip("\xef\xbb\xbf ").upper().startswith("SITE CODE") and "INITIAL TIME" in keys
 

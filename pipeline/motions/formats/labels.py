@@ -28,7 +28,8 @@ _STEP = _label(
     r"time (?:increment|step|interval)|(?:sampling|sample) (?:interval|period|step)|delta(?: ?t)?|dt|"
     r"intervalo de muestreo|paso de tiempo|intervallo di campionamento|passo di campionamento|"
     r"pas (?:de temps|d'.{1,2}chantillonnage)|abtastintervall|zeitschritt|"
-    r".rnekleme aral...|zaman ad.m.|采样间隔|时间间隔|サンプリング間隔|шаг(?: по времени| дискретизации)?",
+    r".rnekleme aral...|zaman ad.m.|采样间隔|时间间隔|サンプリング間隔|шаг(?: по времени| дискретизации)?|"
+    r"pas(?:ul)? (?:de|in) timp|βήμα(?: χρόνου)?|χρονικό βήμα",
     rf"{_NUMBER}\s*([a-z]{{1,8}})?",
 )
 _STEP_BARE = re.compile(
@@ -48,10 +49,14 @@ _RATE = _label(
 _COUNT = _label(
     r"(?:number|no\.?) of (?:data|points|samples|values)|npts|ndata|(?:num_?)?samples|sample[ _]count|"
     r"n.{1,2}mero de (?:muestras|datos|puntos)|numero (?:di )?(?:dati|campioni|punti)|"
-    r"nombre de points|anzahl (?:der )?werte",
+    r"nombre de points|anzahl (?:der )?werte|num.{1,2}r(?:ul)? de (?:puncte|valori)|αριθμός (?:σημείων|τιμών)",
     r"(\d{1,9})(?![.\d])",
 )
-_UNIT = _label(r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|einheit|birim|单位|単位|единицы(?: измерения)?", r"(\S.*)")
+_UNIT = _label(
+    r"(?:field_)?units?|unidad(?:es)?|unit.{1,2}|"
+    r"unit.{1,2}[tțţ]i|μονάδ(?:α|ες)|einheit|birim|单位|単位|единицы(?: измерения)?",
+    r"(\S.*)",
+)
 _ACCELERATION = r"\b(?:accel\w*|acc.l.ration\w*|acel\w*|beschleunigung\w*|ivme\w*|ускорени\w*)\b"
 _IN = re.compile(
     rf"(?:(?:{_ACCELERATION}|\bacc\b).{{0,40}}?|\bdata )\b(?:in|en|em) (?:units of )?"
@@ -81,6 +86,10 @@ _START = _label(
     r"(\d{4})[-/](\d\d)[-/](\d\d)[T ](\d\d):(\d\d):(\d\d(?:\.\d{1,9})?)\s?(?:Z|UTC|GMT)",
 )
 _PEAK = _label(r"pga|peak (?:ground )?acceleration", rf"{_NUMBER}\s*(\S{{1,10}})?")
+_LENGTH = _label(
+    r"(?:record )?(?:duration|length)|record duration|duraci.{1,2}n(?: del registro)?|durata|durée|dauer",
+    rf"{_NUMBER}\s*(?:s|secs?|seconds|seg)?\b(?!\s*(?:points|samples|lines|m\b))",
+)
 _PLACES = {"latitude": r"lat(?:itude?|itud|\.)?(?:_deg)?", "longitude": r"lon(?:gitude?|gitud|g?\.)?(?:_deg)?"}
 _PLACE = {key: _label(words, _NUMBER) for key, words in _PLACES.items()}
 _PER_ROW = re.compile(
@@ -141,16 +150,18 @@ _TURNED = re.compile(r"[(\[]\s*(\d{3}|[NS]?\s?\d{1,3}\s?[EW]|up|down|[A-Z][A-Za-
 
 _WORD = re.compile(r"[^\s()\[\]]+(?:[ ]?[(\[][^()\[\]]*[)\]])?")
 _PREFIX = re.compile(
-    r"^(?:acc(?:el(?:eration|erazione)?)?|acc.l.ration|acel(?:eraci.n)?|acelera..o|beschleunigung|ivme|"
+    r"^(?:acc(?:el(?:eration|erazione)?)?|acc.l.ration|acel(?:eraci.n)?|acelera..o|accelera[tţț]ie|beschleunigung|ivme|"
     r"ускорение|επιτ.χυνση|a)[ _.-]+(?:comp(?:onente?|osante)?[ _.-]+)?|^加速度(?=[A-Za-z])",
     re.I,
 )
 _SAID: dict[str, Orientation] = {
     **dict.fromkeys(("e-o", "eo", "e-v", "est-vest", "este-oeste", "est-ouest", "est-ovest", "o-w", "ost-west",
-                     "d-b", "dogu-bati", "doğu-batı", "в-з", "восток-запад", "l-o", "leste-oeste", "α-δ"), 90.0),
+                     "d-b", "dogu-bati", "doğu-batı", "в-з", "восток-запад", "l-o", "leste-oeste", "α-δ",
+                     "ανατολή-δύση", "شرق-غرب"), 90.0),
     **dict.fromkeys(("norte-sur", "nord-sud", "nord-süd", "kuzey-güney", "k-g", "с-ю", "север-юг", "norte-sul",
-                     "kuzey-guney", "β-ν"), 0.0),
-    **dict.fromkeys(("verticale", "vertikal", "düşey", "dusey", "arriba", "вертикаль", "κατακόρυφη"), "up"),
+                     "kuzey-guney", "β-ν", "βορράς-νότος", "شمال-جنوب"), 0.0),
+    **dict.fromkeys(("verticale", "vertikal", "düşey", "dusey", "arriba", "вертикаль", "верт", "κατακόρυφη",
+                     "verticala", "verticală", "قائم"), "up"),
 }  # fmt: skip
 """Orientations in other languages; the first of two directions is the positive one."""
 
@@ -192,6 +203,8 @@ class RecordHead:
         In s.
     count : int or None
         Of samples.
+    length : float or None
+        In s, of what it calls a duration: mostly the record's, at times that of its strong part.
     kind, unit : str
         As `unit_of`, of the samples.
     orientation : float, str or None
@@ -221,6 +234,7 @@ class RecordHead:
     at: dict[str, int] = field(default_factory=dict)
     step: float | None = None
     count: int | None = None
+    length: float | None = None
     kind: str = ""
     unit: str = ""
     orientation: Orientation = None
@@ -258,7 +272,7 @@ def turned(word: str) -> Orientation:
     if points(said):
         return said
     coded = trace_headers.seed_orientation(word.upper())
-    plain = word.strip().lower().replace("/", "-")
+    plain = word.strip().lower().rstrip(".").replace("/", "-")
     other: Orientation = _SAID.get(plain, _CHINESE.get(_GLYPHS.sub("", word)))
     return next((one for one in (coded, other) if one is not None), said)
 
@@ -330,6 +344,8 @@ def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn
     if len(cells) != width or not all(found):
         return ()
     columns = []
+    # One column of (V) is the vertical, several are in volts.
+    volts = sum(one is not None and one[2] == "V" for one in found) > 1
     # What counts the rows may stand before the time.
     first = int(len(cells) > 1 and is_index(cells[0]))
     for number, one in enumerate(found):
@@ -341,7 +357,7 @@ def columns_of(text: str, width: int, separator: str | None) -> tuple[HeadColumn
         is_time = number == first and (in_time or (not word and bool(_TIME.match(name))))
         kind, unit = ("", word.lower()) if is_time else unit_of(word)
         kind = "a spectrum" if spectral(name) else kind or _kind_by(name)
-        if word and not kind and not is_time and _TURNED.match(f"({word}") and points(turned(word)):
+        if word and not kind and not is_time and not volts and _TURNED.match(f"({word}") and points(turned(word)):
             name, word = f"{name} ({word})", ""
         columns.append(HeadColumn(name, kind, unit, is_time, "" if kind or is_time else word))
     if separator is None and columns[-1].kind and not any(one.kind or one.said for one in columns[:-1]):
@@ -424,6 +440,9 @@ def _numbers(lines: Lines, index: int, text: str, head: RecordHead) -> None:
         head.says(lines, index, "step", 1.0 / float(found[1]))
     if found := _COUNT.search(text):
         head.says(lines, index, "count", int(found[2]))
+    if (found := _LENGTH.search(text)) and head.length is None and float(found[2]) > 0.0:
+        # Two durations contradict nothing: that of the record, and of its strong part.
+        head.length, head.at["length"] = float(found[2]), index
     if found := _PER_ROW.search(text):
         head.per_row = int(found[1] or found[2])
     if (found := _PEAK.search(text)) and (unit := unit_of(found[1] or found[3] or ""))[0] == "acceleration":

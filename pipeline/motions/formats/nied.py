@@ -65,7 +65,9 @@ def traces(lines: Lines, headonly: bool) -> list[Any]:
         raise lines.error(keys.end, f"expected a time, found {record_text.shown(lines.text(keys.end))}")
     start = trace_headers.start_time(lines, keys.end, *map(float, moment.groups())) - _JAPAN
     rows = [line.partition(b",")[2] for line in lines.lines[keys.end :]]
-    table = blocks.rows(Lines(lines.file, lines.lines[: keys.end] + rows), keys.end, 1 + len(names), "samples", b",")
+    table = blocks.rows(
+        Lines(lines.file, lines.lines[: keys.end] + rows, lines.skipped), keys.end, 1 + len(names), "samples", b","
+    )
     announced = round(_value(lines, keys, "DurationTime(s)") * rate)
     if announced != len(table):
         wrong = f"announces {announced} samples, and {len(table)} are there"

@@ -29,7 +29,7 @@ _OLD = re.compile(r"^\s*(\d{1,9})\s+(\d{0,4}\.\d{1,9})\s+NPTS\s*,\s*DT", re.IGNO
 
 def is_format(source: Source) -> bool:
     """Whether a source is a PEER AT2 file, from its first four lines."""
-    lines = record_text.head(source).splitlines()[:4]
+    lines = record_text.parted(record_text.head(source))[:4]
     return len(lines) == 4 and bool(_UNIT.search(lines[2])) and bool(_NEW.search(lines[3]) or _OLD.search(lines[3]))
 
 

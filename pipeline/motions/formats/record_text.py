@@ -26,6 +26,8 @@ HEAD = 8192
 NUMBER = r"-?(?:\d{1,7}\.?\d{0,6}|\.\d{1,6})"
 """A number in the text of a header, as a pattern; always one that float() takes."""
 
+_PADDING = re.compile(rb"\A(?:[ \t]*\n)+")
+
 Source = str | Path | IO[bytes]
 
 
@@ -50,10 +52,13 @@ class Lines:
         What messages call the file.
     lines : list of bytes
         Without line ends.
+    skipped : int
+        Blank lines of the file before the first of them, which messages count.
     """
 
     file: str
     lines: list[bytes]
+    skipped: int = 0
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -74,11 +79,11 @@ class Lines:
         -------
         FormatError
         """
-        return FormatError(f"{self.file}: line {index + 1}: {wrong}; {remedy}")
+        return FormatError(f"{self.file}: line {index + 1 + self.skipped}: {wrong}; {remedy}")
 
     def other(self, index: int, wrong: str, remedy: str = "give the file of the acceleration") -> OtherQuantityError:
         """Return the error of a file that holds no acceleration, at the line that says so; as `error`."""
-        return OtherQuantityError(f"{self.file}: line {index + 1}: {wrong}; {remedy}")
+        return OtherQuantityError(f"{self.file}: line {index + 1 + self.skipped}: {wrong}; {remedy}")
 
     def text(self, index: int, expected: str = "a line") -> str:
         """Return a line as printable text without trailing blanks.
@@ -178,12 +183,22 @@ def first_lines(source: Source) -> tuple[str, bool]:
     # A text may end in NUL bytes or end-of-file marks; in front of anything else they mean that it is no text.
     if not isinstance(raw, bytes) or b"\0" in raw.rstrip(b"\0\x1a\r\n "):
         return "", True
-    return _plain(raw).decode("latin-1"), len(raw) < HEAD
+    return _unpadded(_plain(raw)).decode("latin-1"), len(raw) < HEAD
+
+
+def parted(text: str) -> list[str]:
+    """Return the lines of a text of `head`: its letters may hold bytes that str.splitlines takes for line ends."""
+    return text.removesuffix("\n").split("\n") if text else []
 
 
 def _plain(raw: bytes) -> bytes:
     """A text without the mark that editors put before UTF-8, and with one kind of line ends."""
     return raw.removeprefix(codecs.BOM_UTF8).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+
+
+def _unpadded(raw: bytes) -> bytes:
+    """The same without the blank lines that mails and editors put before the first."""
+    return _PADDING.sub(b"", raw)
 
 
 def open_lines(source: Source) -> Lines:
@@ -220,14 +235,15 @@ def open_lines(source: Source) -> Lines:
     count = raw.count(b"\n") + 1
     if count > MAX_LINES:
         raise FormatError(f"{file}: line {MAX_LINES}: has {count} lines, more than a record; split it by channels")
-    lines = raw.split(b"\n")
+    kept = _unpadded(raw)
+    lines, skipped = kept.split(b"\n"), raw.count(b"\n") - kept.count(b"\n")
     long = next((i for i, line in enumerate(lines) if len(line) > MAX_LINE), None)
     if long is not None:
         wrong = f"has {len(lines[long])} characters, which no line of a record has"
-        raise Lines(file, lines).error(long, wrong, "fetch the file again")
+        raise Lines(file, lines, skipped).error(long, wrong, "fetch the file again")
     if not lines[-1].strip(b"\0\x1a "):
         lines.pop()
-    return Lines(file, lines)
+    return Lines(file, lines, skipped)
 
 
 def reader(traces: Callable[[Lines, bool], list[Any]]) -> Callable[..., Any]:

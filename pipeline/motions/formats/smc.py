@@ -36,7 +36,7 @@ _PRECISE = 8
 
 def is_format(source: Source) -> bool:
     """Whether a source is an SMC file, from its first line and its integer header."""
-    lines = record_text.head(source).splitlines()
+    lines = record_text.parted(record_text.head(source))
     if len(lines) < _TEXT + _INTEGER_LINES or not _TITLE.search(lines[0]):
         return False
     return all(_INTEGERS.match(line.rstrip().ljust(80)) for line in lines[_TEXT : _TEXT + _INTEGER_LINES])
@@ -81,7 +81,8 @@ def read_format(source: Source, headonly: bool = False, resample: float = irregu
     values, end = blocks.fixed(lines, index, count, fields, width, "acceleration")
     more = _rest(lines, end)
     direction = _direction(lines, integers)
-    if _missing(reals, reals[1]):
+    uneven = _missing(reals, reals[1])
+    if uneven:
         data, dt, more["resampled"] = _pairs(lines, index, values, fields // 2, resample)
     else:
         data, dt = values, blocks.step(lines, _TEXT + _INTEGER_LINES, 1.0 / max(float(reals[1]), 1e-9))
@@ -89,6 +90,9 @@ def read_format(source: Source, headonly: bool = False, resample: float = irregu
     if name := _STATION.search(lines.text(5)):
         more["station_name"] = name[1]
     quake = _EVENT.match(lines.text(3))
+    if found and kind[1] != "0":
+        digit = 0.01 * 10.0 ** -len(found[1].partition(".")[2])
+        trace_headers.said_peak(lines, 6, 0.01 * float(found[1]), digit, values[1::2] if uneven else values, 0.01)
     unknown = kind[1] == "0"
     number = int(integers[8]) if integers[8] > 0 and not _missing(integers, integers[8]) else None
     trace = trace_headers.make_trace(

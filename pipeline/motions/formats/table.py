@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import blocks, irregular, labels, nied, record_text, trace_headers, unit_words
+from pipeline.motions.formats import agreement, blocks, irregular, labels, nied, record_text, trace_headers, unit_words
 from pipeline.motions.formats.record_text import Lines, Source
 from pipeline.motions.formats.trace_headers import FACTORS, Orientation
 from pipeline.quantities import Array
@@ -35,7 +35,7 @@ _KEY = re.compile(r"^#\s*(processed|station|start)\s*:\s*(.*)$", re.IGNORECASE)
 _START = re.compile(r"^(\d{4})-(\d\d)-(\d\d)[T ](\d\d):(\d\d):(\d\d(?:\.\d{1,6})?)Z?$")
 _STATION = re.compile(r"^(?:(\w{1,8})\.)?(\w{1,8})$")
 _SAID = {"yes": True, "true": True, "no": False, "false": False}
-_NUMBER = rb"[ \t]*[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[Ee][+-]?\d{1,3})?[ \t]*"
+_NUMBER = rb"[ \t]*[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[EeDd][+-]?\d{1,3})?[ \t]*"
 _MOST_COMMENTS = 100
 _MOST_COLUMNS = 100
 
@@ -47,9 +47,13 @@ def is_format(source: Source) -> bool:
     """
     if nied.is_format(source):
         return True
-    for line in record_text.head(source).splitlines()[:_MOST_COMMENTS]:
+    rows = record_text.parted(record_text.head(source))[:_MOST_COMMENTS]
+    for index, line in enumerate(rows):
         if line.strip() and not line.startswith("#"):
             cells = _cells(line.encode("latin-1"))
+            if any(":" in row for row in rows[index + 1 : index + 2]):
+                # A clock: `columns` knows its forms.
+                return False
             return len(cells) >= 2 and all(cell is not None for cell in cells) and _is_table([c for c in cells if c])
     return False
 
@@ -103,7 +107,9 @@ def _unquoted(lines: Lines, start: int) -> Lines:
     """The same without the quotes that programs put around every cell."""
     if start >= len(lines) or b'"' not in lines.lines[start]:
         return lines
-    return Lines(lines.file, lines.lines[:start] + [line.replace(b'"', b"") for line in lines.lines[start:]])
+    return Lines(
+        lines.file, lines.lines[:start] + [line.replace(b'"', b"") for line in lines.lines[start:]], lines.skipped
+    )
 
 
 def _with_points(lines: Lines, start: int, separator: bytes | None) -> Lines:
@@ -113,7 +119,9 @@ def _with_points(lines: Lines, start: int, separator: bytes | None) -> Lines:
     first = lines.lines[start]
     if b"." in first or not re.search(rb"\d,\d", first):
         return lines
-    return Lines(lines.file, lines.lines[:start] + [line.replace(b",", b".") for line in lines.lines[start:]])
+    return Lines(
+        lines.file, lines.lines[:start] + [line.replace(b",", b".") for line in lines.lines[start:]], lines.skipped
+    )
 
 
 def _separator(row: bytes) -> bytes | None:
@@ -179,7 +187,8 @@ def _numbers(lines: Lines, start: int, separator: bytes | None, columns: int) ->
         if row.fullmatch(line) is None:
             wrong = f"expected {columns} numbers with a decimal point, found {record_text.shown(lines.text(index))}"
             raise lines.error(index, wrong)
-        values.extend(map(float, line.split(separator)))
+        # Fortran writes exponents of double precision with a D.
+        values.extend(map(float, line.upper().replace(b"D", b"E").split(separator)))
     blocks.samples(lines, start, end - start)
     table = np.array(values).reshape(-1, columns)
     if not np.isfinite(table).all():
@@ -200,9 +209,8 @@ def _step(lines: Lines, start: int, times: Array, unit: float) -> float:
     off = np.abs(times - (times[0] + dt * np.arange(len(times))))
     late = off > irregular.rounding(digit, dt, times)
     if late.any():
-        worst = int(np.argmax(late))
-        wrong = f"time {times[worst]:g} s is off the even step of {dt:g} s"
-        raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
+        worst, wrong, remedy = irregular.off_step(times)
+        raise lines.error(start + worst, wrong, remedy)
     return dt
 
 
@@ -213,6 +221,8 @@ def _agree(lines: Lines, top: int, dt: float, data: Array, units: list[str]) -> 
         trace_headers.said_step(lines, head.at["step"], head.step, dt)
     if head.count is not None:
         trace_headers.said_count(lines, head.at["count"], head.count, data.shape[1])
+    if head.length is not None:
+        agreement.told_length(lines, head.at["length"], head.length, data.shape[1], dt)
     if head.kind == "acceleration":
         trace_headers.said_unit(lines, head.at["unit"], head.unit, units)
     if head.peak is not None:

@@ -110,8 +110,10 @@ def component(text: str) -> tuple[Orientation, str]:
     return said, ""
 
 
-def said_peak(lines: Lines, index: int, said: float, digit: float, data: Array, factor: float) -> None:
-    """Refuse a record whose header prints another peak acceleration than its samples have.
+def said_peak(
+    lines: Lines, index: int, said: float, digit: float, data: Array, factor: float, what: str = "acceleration"
+) -> None:
+    """Refuse a record whose header prints another peak than its samples have.
 
     Agencies print the peak of the samples, of the samples about their mean, or with its sign: any of these will do.
 
@@ -120,13 +122,15 @@ def said_peak(lines: Lines, index: int, said: float, digit: float, data: Array, 
     lines, index : Lines, int
         The file, and the line that says it, from 0.
     said : float
-        The peak in m/s2; zero is taken for one that was not filled in.
+        The peak in m/s2, m/s or m; zero is taken for one that was not filled in.
     digit : float
-        One in its last printed place, in m/s2.
+        One in its last printed place, in the same.
     data : array, shape (n,) or (k, n)
         The samples, or those of k components, of which one has to have the peak.
     factor : float
-        Times the samples gives m/s2.
+        Times the samples gives m/s2, m/s or m.
+    what : {"acceleration", "velocity", "displacement", "reading"}
+        What they are.
 
     Raises
     ------
@@ -142,7 +146,8 @@ def said_peak(lines: Lines, index: int, said: float, digit: float, data: Array, 
     slack = PEAK_TOLERANCE * said + digit
     if np.abs(np.concatenate([as_they_are, about]) - said).min() > slack:
         found = float(as_they_are.max())
-        wrong = f"says a peak acceleration of {said:.4g} m/s2, and the samples have {found:.4g} m/s2"
+        unit = {"acceleration": " m/s2", "velocity": " m/s", "displacement": " m"}.get(what, "")
+        wrong = f"says a peak {what} of {said:.4g}{unit}, and the samples have {found:.4g}{unit}"
         raise lines.error(index, wrong, "it is damaged, or of another unit or record: fetch it again")
 
 

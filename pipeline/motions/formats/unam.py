@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
+from pipeline.motions.formats import agreement, blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import Lines, Source
 
 _TITLE = "ARCHIVO ESTANDAR DE ACELERACION"
@@ -30,7 +30,7 @@ _MOST_LINES = 300
 
 def is_format(source: Source) -> bool:
     """Whether a source is an ASA file, from its title."""
-    return any(line.startswith(_TITLE) for line in record_text.head(source).splitlines()[:12])
+    return any(line.startswith(_TITLE) for line in record_text.parted(record_text.head(source))[:12])
 
 
 def _traces(lines: Lines, headonly: bool) -> list[Any]:
@@ -72,6 +72,9 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     if len(set(steps)) > 1:
         raise lines.error(at, "the channels have different time steps", "split the file by its channels")
     dt = blocks.step(lines, at, steps[0])
+    if "DURACION DEL REGISTRO (s)" in keys:
+        at, lengths = numbers("DURACION DEL REGISTRO (s)", size)
+        agreement.said_length(lines, at, lengths[0], count, dt)
     at, factor = said("FACTOR DE DECIMACION")
     if factor not in {"", "1", "1.0"}:
         # It may be that the step is of before, or of after.

@@ -32,13 +32,15 @@ _ALIKE = {
     **{
         f"{length}{spelt}": f"{length}/s2"
         for length in ("m", "cm", "mm", "nm", "in", "ft")
-        for spelt in ("/s/s", "/ss", "s-2")
+        for spelt in ("/s/s", "/ss", "s-2", ".s-2", "/s-2", "/sn2")
     },
     "g's": "g",
     **dict.fromkeys(("pctg", "percentg", "percentofg", "g%", "%ofg"), "%g"),
     "м/с2": "m/s2",
     "см/с2": "cm/s2",
     "гал": "gal",
+    "ガル": "gal",
+    **dict.fromkeys(("milli-g", "millig"), "mg"),
 }
 
 

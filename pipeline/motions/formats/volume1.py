@@ -28,7 +28,7 @@ _DIGIT = 0.001
 
 def is_format(source: Source) -> bool:
     """Whether a source is a volume 1 of pairs, from its first channel's header."""
-    lines = record_text.head(source).splitlines()[:_TEXT]
+    lines = record_text.parted(record_text.head(source))[:_TEXT]
     return (
         len(lines) == _TEXT
         and bool(_TITLE.search(lines[0]) and _POINTS.search(lines[_AT_POINTS]) and _UNITS.search(lines[_AT_UNITS]))
@@ -136,7 +136,7 @@ def _pairs(lines: Lines, index: int, count: int) -> tuple[Array, Array, int]:
         wrong = f"the file ends where line {index + rows} was expected ({count} pairs are announced)"
         raise lines.error(len(lines), wrong, "it is cut off: fetch the file again")
     held = [line[1:] if line[:1] == b" " else b"?" for line in lines.lines[index : index + rows]]
-    shifted = Lines(lines.file, [*lines.lines[:index], *held])
+    shifted = Lines(lines.file, [*lines.lines[:index], *held], lines.skipped)
     values, end = blocks.fixed(shifted, index, 2 * count, 2 * _PAIRS, 7, "time and acceleration")
     return values[::2], values[1::2], end
 

@@ -109,7 +109,8 @@ def smc(corrected: bool = True, vertical: int = 90, azimuth: int = 133, values: 
     component = {0: "up", 180: "down"}.get(vertical, f"{azimuth}")
     lines = [f"{'2 CORRECTED' if corrected else '1 UNCORRECTED'} ACCELEROGRAM", "*", "A000A"]
     lines += ["     2001   1   1    0004 Nowhere", "Moment Mag=", f"station = Nowhere  component=    {component}"]
-    lines += ["epicentral dist =     63.0       pk acc =    100.0", "inst type=SMA-1", "*", "*", "*"]
+    peak = np.abs(values if corrected else values[1::2]).max()
+    lines += [f"epicentral dist =     63.0       pk acc = {peak:8.1f}", "inst type=SMA-1", "*", "*", "*"]
     integers = np.full(48, -32768)
     integers[[1, 2, 3, 4, 5, 7, 8, 12, 13, 15, 16]] = 2001, 1, 0, 4, 0, 1, 1, vertical, azimuth, 2, len(values)
     reals = np.full(50, 1.7e38)
@@ -154,7 +155,7 @@ def _cosmos_header(title: str, number: int, azimuth: int, stage: int) -> list[st
     integers = np.full(100, -999)
     integers[[0, 1, 2, 3, 39, 41, 42, 43, 44, 49, 53]] = stage, 1, 4, 120, 2001, 1, 1, 0, 4, number, azimuth
     reals = np.full(100, -999.0)
-    reals[[21, 29, 41, 46, 61, 63]] = 1.0, 39.5, 2.0, 1.0, 1000 * DT, 100.0
+    reals[[21, 29, 41, 46, 61, 63]] = 1.0, 39.5, 2.0, 1.0, 1000 * DT, 100.0 if stage else 1e6
     lines = [f"{title}   (Format v01.20 with 13 text lines)", *["text"] * 3]
     lines += ["Statn No: 02-000001 Code:XX-TEST   Nowhere", *["text"] * 3]
     lines += [f"Sta Chan   {number}: {azimuth} Deg (Rcrdr Chan  ?) Location:Ground", *["text"] * 3]

@@ -57,7 +57,7 @@ CASES = {
     "csv missing": (hand.csv().replace(b"0.030,", b"0.030", 1), 5, "expected 4 numbers"),
     "csv nan": (hand.csv().replace(b"100.000000", b"nan", 1), 2, "expected 4 numbers with a decimal point"),
     "csv comma": (hand.csv("time (s),A (g)", ";").replace(b"0.030;", b"0,030;", 1), 5, "expected 2 numbers"),
-    "csv gap": (hand.csv().replace(b"\n0.300,", b"\n0.304,", 1), 32, "0.304 s is off the even step"),
+    "csv gap": (hand.csv().replace(b"\n0.300,", b"\n0.304,", 1), 32, "go on by 0.014 s to 0.304 s"),
     "csv processed": (hand.csv(comments="# processed: perhaps"), 1, "processed: yes, or no"),
     "csv start": (hand.csv(comments="# start: yesterday"), 1, "start: 2019-07-06"),
 }  # fmt: skip

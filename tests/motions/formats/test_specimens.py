@@ -215,6 +215,8 @@ def test_any_line_ends_and_streams(read, name):
     content = SPECIMENS[name][1]().replace(b"\r\n", b"\n")
     first = read(content)
     assert read(content.replace(b"\n", b"\r\n"), "crlf")[0].data.tolist() == first[0].data.tolist()
+    # Mails and editors put blank lines before the first.
+    assert read(b"\r\n \n" + content, "padded")[0].data.tolist() == first[0].data.tolist()
     assert obspy.read(io.BytesIO(content))[0].data.tolist() == first[0].data.tolist()
 
 
