@@ -30,8 +30,8 @@ EARLIEST = 2.0
 SLOPE, FOLLOWS = (0.8, 1.25), 0.9
 """How much faster or slower a velocity may change than its acceleration, and how well it follows it at least.
 
-Of a dozen recorded channels the slope is 1.00 to 1.08, with a correlation of 0.99 and more; the larger ones are of a record
-that was thinned to 50 samples a second after it was integrated."""
+Of a dozen recorded channels the slope is 1.00 to 1.08, with a correlation of 0.99 and more; the larger ones are of a
+record that was thinned to 50 samples a second after it was integrated."""
 
 _REMEDY = "find out which is right, and mend the other"
 
