@@ -26,8 +26,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
-from pipeline.analysis.rule_table import SHAPES, RuleMatch, RuleTable, faceless, fold, stuff, words_of
+from pipeline.analysis.rule_table import RuleMatch, RuleTable, fold, stuff, words_of
 from pipeline.analysis.rules import PICTURES, Readings, as_classed, readings, without_name
+from pipeline.analysis.shapes import SHAPES, faceless
 from pipeline.collection.dimensions.lexicon import words_for
 from pipeline.records import Item
 from pipeline.tables import table

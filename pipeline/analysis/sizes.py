@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import exp, hypot, log
 
-from pipeline.analysis.rule_table import faceless
+from pipeline.analysis.shapes import faceless
 from pipeline.records import Estimate, Item, Origin, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
