@@ -12,7 +12,7 @@ from pipeline.analysis.masses import mass_of, solid_mass
 from pipeline.analysis.mounts import MountGuess, mount_estimates
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
-from pipeline.analysis.told import line_of
+from pipeline.analysis.told import held_behind, line_of
 from pipeline.analysis.usual import base_of, clearance_of, friction_of, own_damping, shelved, wall_damping_of
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
@@ -21,6 +21,7 @@ from pipeline.records import phrases as say
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.body_rows import BodyRow
+from pipeline.tables.limit_rows import HELD_ABOVE, limit
 
 FROM_ABOVE = "chandelier"
 """Class of which the room is taken of what hangs from above in a room: nothing stands as near as beside what stands."""
@@ -326,7 +327,20 @@ class SceneParameters:
             self._spread("section_modulus", self.sizes.narrow, power=3.0, cause="half_width")
             self._spread("frequency", self.sizes.narrow)
         self._spread("frequency", "height", power=-1.5)
+        if held_behind(item, self.support):
+            self._braced()
         return True
+
+    def _braced(self) -> None:
+        """Let it bend less and sway faster: it is held above its base too."""
+        bends = limit("braced_bending")
+        for name, factors in (("lever", bends), ("frequency", limit("braced_stiffness"))):
+            one = self.found.get(name)
+            if one is not None and one.origin is not Origin.MEASURED:
+                low, value, high = factors.low * one.low, factors.value * one.value, factors.high * one.high
+                note = ", ".join(filter(None, (one.note, HELD_ABOVE)))
+                self.found[name] = replace(one, low=low, value=value, high=high, note=note)
+        self.doubts.append(say.HELD_BEHIND(factor=bends))
 
     def _bending(self, section: Section, mass: Estimate, cg: Estimate) -> None:
         """Keep what its bending hangs on besides: how its base is held, and its frequency where that is estimated."""
