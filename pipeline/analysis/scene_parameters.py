@@ -26,6 +26,9 @@ from pipeline.tables.limit_rows import HELD_ABOVE, limit
 FROM_ABOVE = "chandelier"
 """Class of which the room is taken of what hangs from above in a room: nothing stands as near as beside what stands."""
 
+LAMP, GLASS = "lamp", "glass"
+"""Class of which a shade or drops of glass are borne by a stem that is of metal where the record names one."""
+
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
 
@@ -37,6 +40,24 @@ def material_of(item: Item, values: AssumedValues | None = None) -> Material:
     """
     values = values or assumed()
     return values.material_in(item.material or item.medium) or values.materials[UNKNOWN]
+
+
+def bearing_of(item: Item, row: ObjectClass, values: AssumedValues) -> Material:
+    """Return what the weakest section of an object is made of: of a lamp of glass and bronze its stem is of bronze.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    row : ObjectClass
+        Its class.
+    values : AssumedValues
+        The tables that know the words.
+    """
+    first = material_of(item, values)
+    if row.name != LAMP or first.name != GLASS:
+        return first
+    return next((one for one in values.materials_in(item.material or item.medium) if one.ductile), first)
 
 
 def _measured(value: float | None, unit: str) -> Estimate | None:
@@ -97,6 +118,7 @@ class SceneParameters:
         # All is found with the best of what is not recorded, and then made as uncertain as that is.
         self.item, self.row, self.support, self.values, self.house = self.sizes.filled, row, support, values, house
         self.material = material_of(item, values)
+        self.bearing = bearing_of(item, row, values)
         self.hanging: HangingGuess | None = None
         if support is Support.HUNG:
             told = house.stated.get("hanging")
@@ -296,10 +318,10 @@ class SceneParameters:
         condition = 1.0 if item.condition is None else item.condition
         allowable = _measured(item.allowable_stress_pa, "Pa")
         if allowable is None:
-            bears = self.material.tensile_range
-            note = say.STRESS_UNSEEN(material=self.material.told, stress=bears)
+            bears = self.bearing.tensile_range
+            note = say.STRESS_UNSEEN(material=self.bearing.told, stress=bears)
             if item.condition is not None:
-                note = say.STRESS(material=self.material.told, stress=bears, factor=condition)
+                note = say.STRESS(material=self.bearing.told, stress=bears, factor=condition)
             allowable = Estimate.assumed(
                 bears.value * condition, bears.low * condition, bears.high * condition, "Pa", note, bears.source
             )
@@ -316,7 +338,7 @@ class SceneParameters:
         self._keep("lever", Estimate(lever, "m", Origin.DERIVED, low, high, note))
         self.found |= found.section.estimates(item.orientation_deg is not None)
         shaped = self.shape is not None and self.shape.fill is not None
-        solid = None if shaped else solid_mass(item, self.row, self.material)
+        solid = None if shaped else solid_mass(item, self.row, self.bearing)
         self._keep("solid_mass", solid)
         if solid is not None:
             # What bends is as stiff for its mass as the solid one.
@@ -346,7 +368,7 @@ class SceneParameters:
         """Keep what its bending hangs on besides: how its base is held, and its frequency where that is estimated."""
         item = self.item
         if self.support is Support.FASTENED:
-            self._keep("concentration", concentration(item, self.material))
+            self._keep("concentration", concentration(item, self.bearing))
         if self._known("frequency_hz", "lowest natural frequency", "Hz") is None:
             body = Body(section, mass, cg, item.height_m, item.section_height_m or 0.0, item.width_m or item.depth_m)
-            self._keep("frequency", estimated_frequency(body, self.row, self.material))
+            self._keep("frequency", estimated_frequency(body, self.row, self.bearing))

@@ -8,7 +8,7 @@ from textwrap import shorten
 from pipeline.analysis.rules import PICTURES, readings
 from pipeline.collection.places import beside_case, case_in
 from pipeline.quantities import LENGTHS
-from pipeline.records import Furniture, Hanging, Item, Mount, Support
+from pipeline.records import Furniture, Hanging, Item, Mount, Scene, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
 from pipeline.tables.held_rows import CASES, hangs_above, stands_or_hangs, stands_too, told_by, words_for
@@ -185,6 +185,20 @@ def display_note(item: Item, support: Support) -> tuple[str, ...]:
     if other is not support and (support, other) not in _TOGETHER and not _hangs_so(item, support, other):
         notes.append(say.SAID_OTHERWISE(support=support.value, other=other.value, words=words))
     return tuple(notes)
+
+
+def unseen_holds(scene: Scene) -> tuple[str, ...]:
+    """Return the notes of a scene on what it takes to hold by its record alone, whatever state it is found in.
+
+    Parameters
+    ----------
+    scene : Scene
+        With its notes.
+    """
+    notes = display_note(as_displayed(scene.item), scene.support)
+    held = held_as_displayed(scene.item, scene.support)
+    shown = [note for note in notes if note == say.DISPLAY_WALL() or (held and note.startswith("support:"))]
+    return tuple(note for note in shown if note in scene.assumptions)
 
 
 def _hangs_so(item: Item, support: Support, told: Support) -> bool:

@@ -7,10 +7,11 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.stakes import doubtful
-from pipeline.analysis.told import line_of
+from pipeline.analysis.told import line_of, unseen_holds
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.records import Furniture, Hanging, Item, Mount, Scene, Support
 from pipeline.records import phrases as say
+from pipeline.tables.assumed import assumed
 from pipeline.tables.held_rows import HeldAs, told_by
 from pipeline.tables.limit_rows import ends_of, limit
 
@@ -206,3 +207,33 @@ def test_what_is_said_to_stand_is_not_doubted_for_its_slenderness() -> None:
     read, silent = replace(classify(column), item=column), classify(COLUMN)
     assert doubtful(read) == 0.0
     assert doubtful(silent) == pytest.approx(2.8 / 0.38)
+
+
+def test_the_stem_of_a_lamp_is_of_its_metal() -> None:
+    lamp = Item("14", "Hall", object_name="table lamp", medium="leaded glass, bronze", height_m=0.68, width_m=0.47,
+                depth_m=0.47, base_width_m=0.25, base_depth_m=0.25, mass_kg=15.0)  # fmt: skip
+    values = assumed()
+    stress = shown(lamp, "on plinth").parameters["allowable_stress"]
+    assert stress.value == values.materials["bronze"].tensile_range.value
+    glass = shown(replace(lamp, medium="leaded glass"), "on plinth").parameters["allowable_stress"]
+    assert glass.value == values.materials["glass"].tensile_range.value
+
+
+def test_what_holds_by_its_record_alone_is_said_of_what_is_fine_too() -> None:
+    vase = Item("15", "Hall", object_name="vase", medium="porcelain", height_m=0.36, width_m=0.22, depth_m=0.22,
+                mass_kg=4.1, case="Case 4")  # fmt: skip
+    (told,) = unseen_holds(shown(vase, "museum wax"))
+    assert "museum wax" in told
+    # As a report is made: from the record as it was read.
+    read = replace(shown(vase, "museum wax"), item=replace(vase, displayed="museum wax"))
+    assert unseen_holds(read) == (told,)
+    assert unseen_holds(shown(vase, "free on plinth")) == ()
+    picture = Item("16", "Hall", object_name="painting", medium="acrylic on canvas", height_m=2.0, width_m=1.5)
+    assert unseen_holds(shown(picture, "on free-standing display wall, two hooks")) == (say.DISPLAY_WALL(),)
+
+
+def test_a_mosaic_on_brackets_does_not_swing() -> None:
+    panel = Item(
+        "17", "Hall", object_name="mosaic", medium="stone", height_m=1.5, width_m=1.5, depth_m=0.06, mass_kg=95.0
+    )
+    assert shown(panel, "on four steel brackets on wall").hanging is Hanging.FIXED
