@@ -9,6 +9,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.stakes import doubtful
 from pipeline.analysis.told import line_of, unseen_holds
 from pipeline.mitigate.catalogue import own_catalogue
+from pipeline.models import model_named
 from pipeline.records import Furniture, Hanging, Item, Mount, Scene, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import assumed
@@ -189,7 +190,11 @@ def test_trestles_are_loose_and_a_display_wall_is_named() -> None:
 def test_a_head_on_a_pin_is_held_as_nobody_knows() -> None:
     head = Item("13", "Hall", object_name="head", title="Head of a goddess", medium="marble", height_m=0.32,
                 width_m=0.24, depth_m=0.26, mass_kg=21.0)  # fmt: skip
-    assert shown(head, "on a steel pin").mount is Mount.UNKNOWN
+    mask = replace(MASK, displayed="on a pin")
+    for pinned in (shown(head, "on a steel pin"), classify(mask)):
+        assert (pinned.support, pinned.mount) == (Support.FASTENED, Mount.UNKNOWN)
+        # Something is computed of it: it slides once the grip of its pin is overcome.
+        assert model_named("sliding").applies(pinned) == ""
     assert shown(replace(head, section_width_m=0.02), "on a steel pin").mount is None
 
 
