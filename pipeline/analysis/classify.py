@@ -15,7 +15,7 @@ from pipeline.analysis.bodies import as_it_stands, body, of_pieces, on_floor
 from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of, taken_of
 from pipeline.analysis.furniture import furniture_of, in_furniture
 from pipeline.analysis.house.matching import NO_EFFECT, HouseEffect, HouseRules
-from pipeline.analysis.mounts import MountGuess, mount_of
+from pipeline.analysis.mounts import MountGuess, mount_of, mount_of_body
 from pipeline.analysis.named_stuff import FLAT, as_made
 from pipeline.analysis.rule_table import RuleTable
 from pipeline.analysis.rules import Readings, readings
@@ -23,7 +23,7 @@ from pipeline.analysis.scene_parameters import SceneParameters, material_of
 from pipeline.analysis.told import as_displayed, as_told, display_note, in_case, too_slender
 from pipeline.models import MODELS, model_named
 from pipeline.models.friction_isolator import FRICTION_ISOLATOR
-from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Item, Origin, Scene, Support, too_thin
+from pipeline.records import UNTOLD_ISOLATOR, Estimate, Furniture, Hanging, Item, Origin, Scene, Support, too_thin
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, ObjectClass
@@ -177,7 +177,7 @@ def furniture_kind(
     """Return the kind of furniture of the scene that `classify` returns, at a third of its cost."""
     item, taken, row, said, values = _known_of(item, rules, decided, house)
     stance = _stance(item, row, taken.words, values, said)
-    return furniture_of(on_floor(item, stance.shape), row.name, stance.support, said).furniture
+    return furniture_of(on_floor(_as_taken(item, stance), stance.shape), row.name, stance.support, said).furniture
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,20 @@ def _stance(item: Item, row: ObjectClass, words: str, values: AssumedValues, hou
     support = taken.support or row.support
     mount = mount_of(taken, row, house, cased=in_case(laid, row))
     shape = body(taken, row, words, support, mount, material_of(item, values))
+    mount = mount or mount_of_body(taken, support, shape)
     return _Stance(laid, by_record, taken, support, mount, shape)
+
+
+def _as_taken(item: Item, stance: _Stance) -> Item:
+    """Return a record with what it is on, and how it hangs there, as the rest of it tells for its class."""
+    taken = stance.taken
+    fixed = stance.support is Support.HUNG and taken.hanging is Hanging.FIXED and stance.laid.hanging is None
+    return replace(
+        item,
+        surface_material=stance.laid.surface_material,
+        hanging=Hanging.FIXED if fixed else item.hanging,
+        furniture=item.furniture or (Furniture.WALL if taken.furniture is Furniture.WALL else None),
+    )
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
@@ -209,7 +222,7 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
     if not models:
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
-    item = as_it_stands(on_floor(replace(item, surface_material=stance.laid.surface_material), shape), shape)
+    item = as_it_stands(on_floor(_as_taken(item, stance), shape), shape)
     builder = SceneParameters(item, row if shape is None else shape.of_class(row), support, values, house, mount, shape)
     builder.build()
     if mount is None:

@@ -4,6 +4,7 @@ A coin lies on its largest face; a mask is held by a mount of which hardly any r
 stated by a house rule, or shown by what the record says of its support, or taken as is usual (tables/mounts.csv).
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, radians, sin
@@ -11,9 +12,10 @@ from math import cos, radians, sin
 from pipeline.analysis.house.matching import MOUNTED_BY, HouseEffect
 from pipeline.analysis.section import share_of
 from pipeline.analysis.sizes import SIZES, Sizes, sizes_known
-from pipeline.records import Estimate, Item, Mount, Origin, Support
+from pipeline.records import Estimate, Furniture, Hanging, Item, Mount, Origin, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
+from pipeline.tables.body_rows import CYCLES, BodyRow
 from pipeline.tables.held_rows import told_by
 from pipeline.tables.mount_rows import MountRow, mount_rows
 
@@ -25,6 +27,19 @@ THIN = 0.15
 
 TALL, DEEP = 1.2, 0.3
 """Height and least size [m] from which on what is held by mounts stands on a base of its own: judgement."""
+
+OF_CASE = 0.6
+"""Height [m] below which the stand of what is held by mounts is a mount, and no figure with a base of its own.
+
+Judgement: what is taller than most cases stands on its own base.
+"""
+
+_STAND = re.compile(
+    r"\b(?:on|by|with) (?:\S+ ){0,3}\S*stands?\b|t-bar|ständer|stativ|support|supporto|soporte|suporte|standaard"
+    r"|stojan|stojak|állvány|подставк|βάση|台",
+    re.IGNORECASE,
+)
+"""Words for the stand of what is held by mounts."""
 
 _UPRIGHT = (Mount.STANDING, Mount.LEANING)
 
@@ -86,15 +101,19 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = 
     rows, told, words = mount_rows(), house.stated.get("mount"), told_by(item.displayed).mount
     # What leans does so whatever its class: a panel on an easel hangs no more.
     leans = words is Mount.LEANING and item.support is Support.FREESTANDING
-    if words is not None and (leans or cased or item.support in (None, row.support)):
+    fixed = item.hanging is Hanging.FIXED
+    if words is not None and (leans or cased or (item.support in (None, row.support) and not fixed)):
         return MountGuess(rows[words], Origin.MEASURED)
-    if WHEN_HELD not in row.models and not cased:
+    pinned = words is Mount.UNKNOWN and item.support is Support.FASTENED and item.section_width_m is None
+    if WHEN_HELD not in row.models and not (cased or pinned):
         return None
     if told is not None:
         return MountGuess(rows[Mount(str(told.value))], Origin.STATED)
     if words is Mount.UNKNOWN:
         # On a pin or rod: what carries it is told, and not whether that holds it.
         return MountGuess(rows[words], Origin.MEASURED)
+    if item.support is Support.FASTENED and cased:
+        return MountGuess(rows[Mount.SECURED], Origin.MEASURED)
     if item.support is not None and not cased:
         way = MOUNTED_BY.get(item.support)
         if way is None or (way is Mount.SECURED and item.section_width_m is not None):
@@ -102,6 +121,9 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = 
         if way is Mount.STANDING and row.name == rows[Mount.LYING].kind and _thin(item):
             # A disc or a plaque on a stand does not stand on its edge.
             way = Mount.LEANING
+        elif way is Mount.STANDING and _on_small_stand(item, row, rows):
+            # A mask or a helmet on a stand has no foot: what stands is its mount, and how that grips is not told.
+            way = Mount.UNKNOWN
         return MountGuess(rows[way], Origin.STATED if "held" in house.stated else Origin.MEASURED)
     # Miniatures and plaques that are small enough lie in their case.
     other = rows[Mount.LYING if cased and max(sizes_known(item).values(), default=LAID) < LAID else Mount.UNKNOWN]
@@ -110,6 +132,37 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = 
         usual = rows[Mount.STANDING]
     note = f"{say.MOUNT(mount=usual.title, told=row.told)}; {say.NOT_RECORDED()}"
     return MountGuess(usual, Origin.ASSUMED, note)
+
+
+def mount_of_body(item: Item, support: Support, body: BodyRow | None) -> MountGuess | None:
+    """Return how a thing is held whose kind has no section that is known to be weak; None where it stands by itself.
+
+    A bicycle that is strapped to its plinth does not bend at its foot: what holds it is what may fail.  On a bracket it
+    is held by that, and does not stand on it as on a shelf.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    support : Support
+        How it is taken to be held.
+    body : BodyRow or None
+        What is known of its shape.
+    """
+    if body is None or body.section or item.section_width_m is not None:
+        return None
+    told, rows = told_by(item.displayed), mount_rows()
+    if support is Support.FASTENED and told.mount is Mount.SECURED:
+        return MountGuess(rows[Mount.SECURED], Origin.MEASURED)
+    if body.body in CYCLES and support is Support.FREESTANDING and told.furniture is Furniture.SHELF:
+        return MountGuess(rows[Mount.UNKNOWN], Origin.MEASURED)
+    return None
+
+
+def _on_small_stand(item: Item, row: ObjectClass, rows: Mapping[Mount, MountRow]) -> bool:
+    """Say whether what cannot stand by itself is said to be on a stand that is no taller than what fits a case."""
+    tall = sizes_known(item).get("height", 0.0) >= OF_CASE
+    return row.name == rows[Mount.UNKNOWN].kind and not tall and _STAND.search(item.displayed) is not None
 
 
 def _thin(item: Item) -> bool:

@@ -12,7 +12,7 @@ from pipeline.analysis.masses import mass_of, solid_mass
 from pipeline.analysis.mounts import MountGuess, mount_estimates
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.analysis.sizes import PLAN, Sizes
-from pipeline.analysis.told import line_of
+from pipeline.analysis.told import held_behind, line_of
 from pipeline.analysis.usual import base_of, clearance_of, friction_of, own_damping, shelved, wall_damping_of
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
@@ -21,9 +21,13 @@ from pipeline.records import phrases as say
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.body_rows import BodyRow
+from pipeline.tables.limit_rows import HELD_ABOVE, limit
 
 FROM_ABOVE = "chandelier"
 """Class of which the room is taken of what hangs from above in a room: nothing stands as near as beside what stands."""
+
+LAMP, GLASS = "lamp", "glass"
+"""Class of which a shade or drops of glass are borne by a stem that is of metal where the record names one."""
 
 _CORD = 1.0
 """How much longer a cord from a rail may make what a work hangs by than its upper edge [m], by judgement."""
@@ -36,6 +40,24 @@ def material_of(item: Item, values: AssumedValues | None = None) -> Material:
     """
     values = values or assumed()
     return values.material_in(item.material or item.medium) or values.materials[UNKNOWN]
+
+
+def bearing_of(item: Item, row: ObjectClass, values: AssumedValues) -> Material:
+    """Return what the weakest section of an object is made of: of a lamp of glass and bronze its stem is of bronze.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    row : ObjectClass
+        Its class.
+    values : AssumedValues
+        The tables that know the words.
+    """
+    first = material_of(item, values)
+    if row.name != LAMP or first.name != GLASS:
+        return first
+    return next((one for one in values.materials_in(item.material or item.medium) if one.ductile), first)
 
 
 def _measured(value: float | None, unit: str) -> Estimate | None:
@@ -96,6 +118,7 @@ class SceneParameters:
         # All is found with the best of what is not recorded, and then made as uncertain as that is.
         self.item, self.row, self.support, self.values, self.house = self.sizes.filled, row, support, values, house
         self.material = material_of(item, values)
+        self.bearing = bearing_of(item, row, values)
         self.hanging: HangingGuess | None = None
         if support is Support.HUNG:
             told = house.stated.get("hanging")
@@ -295,10 +318,10 @@ class SceneParameters:
         condition = 1.0 if item.condition is None else item.condition
         allowable = _measured(item.allowable_stress_pa, "Pa")
         if allowable is None:
-            bears = self.material.tensile_range
-            note = say.STRESS_UNSEEN(material=self.material.told, stress=bears)
+            bears = self.bearing.tensile_range
+            note = say.STRESS_UNSEEN(material=self.bearing.told, stress=bears)
             if item.condition is not None:
-                note = say.STRESS(material=self.material.told, stress=bears, factor=condition)
+                note = say.STRESS(material=self.bearing.told, stress=bears, factor=condition)
             allowable = Estimate.assumed(
                 bears.value * condition, bears.low * condition, bears.high * condition, "Pa", note, bears.source
             )
@@ -315,7 +338,7 @@ class SceneParameters:
         self._keep("lever", Estimate(lever, "m", Origin.DERIVED, low, high, note))
         self.found |= found.section.estimates(item.orientation_deg is not None)
         shaped = self.shape is not None and self.shape.fill is not None
-        solid = None if shaped else solid_mass(item, self.row, self.material)
+        solid = None if shaped else solid_mass(item, self.row, self.bearing)
         self._keep("solid_mass", solid)
         if solid is not None:
             # What bends is as stiff for its mass as the solid one.
@@ -326,13 +349,26 @@ class SceneParameters:
             self._spread("section_modulus", self.sizes.narrow, power=3.0, cause="half_width")
             self._spread("frequency", self.sizes.narrow)
         self._spread("frequency", "height", power=-1.5)
+        if held_behind(item, self.support):
+            self._braced()
         return True
+
+    def _braced(self) -> None:
+        """Let it bend less and sway faster: it is held above its base too."""
+        bends = limit("braced_bending")
+        for name, factors in (("lever", bends), ("frequency", limit("braced_stiffness"))):
+            one = self.found.get(name)
+            if one is not None and one.origin is not Origin.MEASURED:
+                low, value, high = factors.low * one.low, factors.value * one.value, factors.high * one.high
+                note = ", ".join(filter(None, (one.note, HELD_ABOVE)))
+                self.found[name] = replace(one, low=low, value=value, high=high, note=note)
+        self.doubts.append(say.HELD_BEHIND(factor=bends))
 
     def _bending(self, section: Section, mass: Estimate, cg: Estimate) -> None:
         """Keep what its bending hangs on besides: how its base is held, and its frequency where that is estimated."""
         item = self.item
         if self.support is Support.FASTENED:
-            self._keep("concentration", concentration(item, self.material))
+            self._keep("concentration", concentration(item, self.bearing))
         if self._known("frequency_hz", "lowest natural frequency", "Hz") is None:
             body = Body(section, mass, cg, item.height_m, item.section_height_m or 0.0, item.width_m or item.depth_m)
-            self._keep("frequency", estimated_frequency(body, self.row, self.material))
+            self._keep("frequency", estimated_frequency(body, self.row, self.bearing))

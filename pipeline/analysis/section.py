@@ -13,6 +13,9 @@ from pipeline.tables.assumed_rows import ObjectClass
 OF_CLASS = {"stem": ("round", 1), "ankles": ("round", 2), "foot": ("rectangle", 1), "legs": ("rectangle", 4)}
 """Shape and number of the sections that classes.csv names."""
 
+PLAN = "plan"
+"""Section of what is as wide and as deep from its foot up, a slab or a pillar: a share of either side of its base."""
+
 
 @dataclass(frozen=True, slots=True)
 class Section:
@@ -64,8 +67,11 @@ class Section:
             # Both sides of the section were measured: it bends the less, the longer the side along the push.
             sides = (("section_modulus_width", size, deep), ("section_modulus_depth", deep, size))
             for name, along, across in sides:
-                value = self.count * rectangle_modulus(along.value, across.value, self.wall)
-                found[name] = Estimate(value, "m3", size.origin, value, value, self.note, size.source)
+                least, value, most = (
+                    self.count * rectangle_modulus(getattr(along, end), getattr(across, end), self.wall)
+                    for end in ("low", "value", "high")
+                )
+                found[name] = Estimate(value, "m3", size.origin, least, most, self.note, size.source)
         return found
 
 
@@ -115,13 +121,19 @@ def section_of(item: Item, row: ObjectClass, width: Estimate | None, depth: Esti
     if min(narrow.low, across) <= 0.0:
         # What has no width has no section either.
         return KnownSection(None, missing, doubts)
-    of_base = kind in ("foot", "legs", "ring")
+    of_base = kind in ("foot", "legs", "ring", PLAN)
     what = "wall of its foot" if kind == "ring" else f"critical section ({kind})"
     of = "narrower base side" if of_base else "narrower side"
     size = share_of(row, row.critical, narrow.value if of_base else across, "m", what, of)
     if kind == "ring":
         # The size is the wall; the ring's outside is the base.
         return KnownSection(Section("ring", size, narrow, 1, narrow.value, size.note), missing, doubts)
+    if kind == PLAN:
+        # A slab of 92 x 24 cm bends as one, and not as a post of 24 x 24 cm.
+        size, deep = (share_of(row, row.critical, side.value, "m", what, "base side") for side in (width, depth))
+        # As deep as wide it may be round, a column, which is the weaker.
+        shape = "round" if width.value == depth.value else "rectangle"
+        return KnownSection(Section(shape, size, deep, 1, 0.0, size.note), missing, doubts)
     shape, count = OF_CLASS[kind]
     return KnownSection(Section(shape, size, size, count, 0.0, size.note), missing, doubts)
 

@@ -20,7 +20,7 @@ from functools import cache
 from math import exp
 
 from pipeline.analysis.furniture import SHELF_HEIGHT
-from pipeline.analysis.told import SLENDEREST_CLOCK, longcase
+from pipeline.analysis.told import SLENDEREST_CLOCK, as_displayed, longcase
 from pipeline.quantities import G
 from pipeline.records import Assessment, Furniture, Harm, Mount, Scene, Support
 from pipeline.tables import Range, table
@@ -217,7 +217,9 @@ def doubtful(scene: Scene) -> float:
     if scene.mount not in (None, Mount.STANDING):
         return 0.0
     sides = [side for side in (item.width_m, item.depth_m) if side]
-    if scene.support is not Support.FREESTANDING or item.support is not None or not item.height_m or not sides:
+    # What its words for the display say counts as recorded: a report is made from the record as it was read.
+    said = as_displayed(item).support is not None
+    if scene.support is not Support.FREESTANDING or said or not item.height_m or not sides:
         return 0.0
     if item.base_width_m or item.base_depth_m or item.contact_polygon or item.tilt_angle_deg is not None:
         return 0.0

@@ -8,7 +8,7 @@ from textwrap import shorten
 from pipeline.analysis.rules import PICTURES, readings
 from pipeline.collection.places import beside_case, case_in
 from pipeline.quantities import LENGTHS
-from pipeline.records import Furniture, Hanging, Item, Mount, Support
+from pipeline.records import Furniture, Hanging, Item, Mount, Scene, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
 from pipeline.tables.held_rows import CASES, hangs_above, stands_or_hangs, stands_too, told_by, words_for
@@ -33,7 +33,7 @@ _LINES = (
 )
 _LONG = r"(\d{1,3}(?:[.,]\d{1,3})?)\s?(m|cm|ft|feet)\b"
 _HUNG_BY = re.compile(
-    rf"\b{_LINES} (?:of|von|de|di|da|,) ?{_LONG}|(?<![\d.,]){_LONG}(?:[ -]long)? {_LINES}\b", re.IGNORECASE
+    rf"\b{_LINES}(?:,| (?:of|von|de|di|da))? ?{_LONG}|(?<![\d.,]){_LONG}(?:[ -]long)? {_LINES}\b", re.IGNORECASE
 )
 """How long a line is that something hangs by: "by a chain of 2 m", "on 3 m cables"."""
 
@@ -41,6 +41,17 @@ _WALL = re.compile(
     r"wall|wand\b|wänd|\bmur|paret|pared|perete|τοίχ|壁|벽|墙|\bzid|стен|стін|ścian|stěn|\bfal|duvar|vegg|vägg|væg|sein",
     re.IGNORECASE,
 )
+_BEHIND = re.compile(
+    r"\b(?:to|into|from|against) (?:(?:the|a|its|steel|metal|rear|back|stone|brick|wooden) ){0,2}"
+    r"(?:walls?|pillars?|piers?|columns?|backboards?|back ?plates?|back ?panels?)\b"
+    r"|\b(?:through|by) (?:its |the )?back(?:board|plate| board)?\b|\bbraced\b|\bstruts?\b|\bstay(?:s|ed)\b|\bguyed\b"
+    r"|\ban (?:der|die) Wand\b|\bam Pfeiler\b|verstrebt|\bStreben?\b|Rückwand|\b(?:au|à la|contre le) (?:mur|pilier)\b"
+    r"|\ba(?:lla|l) (?:parete|muro|pilastro)\b|\ba(?: la|l) (?:pared|muro|pilar)\b|arriostrad|controventat|haubané"
+    r"|στον τοίχο|壁",
+    re.IGNORECASE,
+)
+"""What says that a thing that is made fast is held above its base too."""
+
 _FURNITURE = ("cabinet", "clock", "table", "seat")
 DEEP = 0.25
 """Smaller plan dimension [m] from which what stands by its class hardly hangs flat on a wall: judgement."""
@@ -136,6 +147,21 @@ def held_as_displayed(item: Item, support: Support) -> bool:
     return support is Support.FASTENED and told_by(item.displayed).mount is Mount.SECURED
 
 
+def held_behind(item: Item, support: Support) -> bool:
+    """Say whether the words for its display tell that a thing is held at a wall, a pillar or a brace above its base.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    support : Support
+        How it is taken to be held.
+    """
+    words = item.displayed
+    told = told_by(words).support in (Support.FASTENED, Support.HUNG)
+    return support is Support.FASTENED and told and _BEHIND.search(words) is not None
+
+
 def display_note(item: Item, support: Support) -> tuple[str, ...]:
     """Return what the words for its display say of how a thing is held, as the beginning of its notes; () for nothing.
 
@@ -146,18 +172,45 @@ def display_note(item: Item, support: Support) -> tuple[str, ...]:
     support : Support
         How it is taken to be held.
     """
-    told = told_by(item.displayed).support
+    how = told_by(item.displayed)
+    told = how.support
     words = shorten(item.displayed.replace(";", ","), _QUOTED, placeholder="...")
     if told is None:
         return ()
-    notes = []
+    notes = [say.DISPLAY_WALL()] if how.furniture is Furniture.WALL and support is Support.HUNG else []
     if told is support:
         said = say.HELD_AS_DISPLAYED if held_as_displayed(item, support) else say.DISPLAYED
         notes.append(said(support=support.value, words=words))
     other = told if told is not support else Support.FREESTANDING if stands_too(item.displayed) else support
-    if other is not support and (support, other) not in _TOGETHER:
+    if other is not support and (support, other) not in _TOGETHER and not _hangs_so(item, support, other):
         notes.append(say.SAID_OTHERWISE(support=support.value, other=other.value, words=words))
     return tuple(notes)
+
+
+def unseen_holds(scene: Scene) -> tuple[str, ...]:
+    """Return the notes of a scene on what it takes to hold by its record alone, whatever state it is found in.
+
+    Parameters
+    ----------
+    scene : Scene
+        With its notes.
+    """
+    notes = display_note(as_displayed(scene.item), scene.support)
+    held = held_as_displayed(scene.item, scene.support)
+    shown = [note for note in notes if note == say.DISPLAY_WALL() or (held and note.startswith("support:"))]
+    return tuple(note for note in shown if note in scene.assumptions)
+
+
+def _hangs_so(item: Item, support: Support, told: Support) -> bool:
+    """Whether what its words tell is what it is taken for, said in another way."""
+    if told is Support.HUNG:
+        # A bell that "hangs in its frame" hangs from above; a sword that hangs on pegs lies on them; a wardrobe that is
+        # screwed to the wall stands and is held by it.
+        how = told_by(item.displayed)
+        fixed = support is Support.FASTENED and how.hanging is Hanging.FIXED
+        return fixed or how.mount is Mount.RESTING or (support is Support.SUSPENDED and not _named_wall(item))
+    # What hangs by its class and is bolted to the wall is held by that.
+    return support is Support.HUNG and told is Support.FASTENED and item.hanging is Hanging.FIXED
 
 
 def as_told(item: Item, row: ObjectClass) -> Item:
@@ -174,8 +227,12 @@ def as_told(item: Item, row: ObjectClass) -> Item:
     row : ObjectClass
         Its class.
     """
-    if row.support is Support.SUSPENDED and _by_chain_alone(item):
+    if row.support is Support.SUSPENDED and _of_no_wall(item):
         return replace(item, support=Support.SUSPENDED, hanging=None)
+    if WHEN_HELD in row.models and item.support is Support.HUNG and told_by(item.displayed).mount is Mount.RESTING:
+        # A sword on two pegs lies on them and may come off; nothing of it swings.
+        on_wall = Furniture.WALL if item.furniture is None and not item.case and _named_wall(item) else item.furniture
+        return replace(item, support=None, hanging=None, furniture=on_wall)
     if row.support is Support.FREESTANDING and WHEN_HELD not in row.models and item.support is Support.HUNG:
         if item.hanging is Hanging.FIXED and (_large(item, THICK, STANDS_FROM) or longcase(item, row.name)):
             # A wardrobe or a longcase clock that is screwed to the wall stands there, and is held by it.
@@ -186,6 +243,8 @@ def as_told(item: Item, row: ObjectClass) -> Item:
         if item.hanging in (None, Hanging.WIRE) and _large(item, DEEP) and not _named_wall(item):
             # A bell, a bicycle or a drum that hangs, and of no wall is told, hangs from above.
             return replace(item, support=Support.SUSPENDED, hanging=None)
+    if row.support is Support.HUNG and item.hanging is None and _held_by_wall(item):
+        return replace(item, support=Support.HUNG, hanging=Hanging.FIXED)
     if item.support is not None or item.hanging is not None:
         return item
     if item.isolator.strip():
@@ -198,9 +257,22 @@ def as_told(item: Item, row: ObjectClass) -> Item:
     return replace(item, support=Support.FREESTANDING)
 
 
-def _by_chain_alone(item: Item) -> bool:
-    """Whether the words for its display tell that a thing hangs by chains or wires, and of no wall."""
-    return told_by(item.displayed).hanging is Hanging.WIRE is item.hanging and not _named_wall(item)
+def _held_by_wall(item: Item) -> bool:
+    """Whether a panel has struts to the wall, or a stele is dowelled to it: the wall holds it, and not its footing."""
+    return (
+        held_behind(item, Support.FASTENED)
+        and item.support is Support.FASTENED
+        and not (_footing(item) or _names_case(item))
+    )
+
+
+def _of_no_wall(item: Item) -> bool:
+    """Whether the words for its display tell that a thing hangs, and neither how it hangs on a wall nor of any wall."""
+    told = told_by(item.displayed)
+    bare = (
+        told.hanging in (None, Hanging.WIRE) and told.hanging is item.hanging and item.support in (None, told.support)
+    )
+    return told.support is Support.HUNG and bare and not _named_wall(item)
 
 
 def _named_wall(item: Item) -> bool:
@@ -225,7 +297,11 @@ def in_case(item: Item, row: ObjectClass) -> bool:
     row : ObjectClass
         Its class.
     """
-    if item.support is not None or item.hanging is not None or row.support is not Support.HUNG or _footing(item):
+    # Miniatures that are pinned to the panel of a case are in it; what is recorded as fixed by its footing stands.
+    pinned = item.support is Support.FASTENED and told_by(item.displayed).support is Support.FASTENED
+    if not (item.support is None or pinned) or item.hanging is not None or _footing(item):
+        return False
+    if row.support is not Support.HUNG:
         return False
     return item.furniture in _IN_CASES or (item.furniture is None and _names_case(item))
 
@@ -233,6 +309,18 @@ def in_case(item: Item, row: ObjectClass) -> bool:
 def _footing(item: Item) -> bool:
     measured = item.base_width_m or item.base_depth_m or item.contact_polygon
     return bool(measured) or item.tilt_angle_deg is not None
+
+
+def hangs_in_case(item: Item) -> bool:
+    """Say whether what is told to hang does so in a case: its record names one, and no wall or ceiling of the room.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+    """
+    told = told_by(item.displayed)
+    return told.support in _ABOVE and told.furniture is None and _names_case(item) and not _named_wall(item)
 
 
 def _names_case(item: Item) -> bool:

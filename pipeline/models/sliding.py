@@ -89,8 +89,8 @@ def _certificate(motion: Excitation, parameters: Mapping[str, Array]) -> Array:
 
 
 def _applies(scene: Scene) -> str:
-    # What a mount holds slides on it once its grip is overcome.
-    if scene.mount is Mount.SECURED:
+    # What a mount holds slides on it once its grip is overcome, on a pin too of which nobody says how it grips.
+    if scene.mount in (Mount.SECURED, Mount.UNKNOWN):
         return needs(scene, "friction_static")
     return unless_free(scene) or needs(scene, "friction_static")
 

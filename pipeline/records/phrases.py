@@ -18,6 +18,13 @@ HELD_AS_DISPLAYED = Clause(
     "support: {support}, taken as made fast at its base until the brace, clips or ties that its record tells of are "
     "recorded as installed: {words}"
 )
+HELD_BEHIND = Clause(
+    "it is held above its base too, as its record says: it bends {factor:-} times as much as if its base alone held it"
+)
+DISPLAY_WALL = Clause(
+    "the wall that it hangs on stands free, as its record says, and nothing is computed of that: see that the wall is "
+    "braced or fastened"
+)
 TWO_BODIES = Clause(
     "its height is that of two bodies, the upper one and what it stands on, which are followed as one: where the "
     "upper one stands loose, it falls sooner"

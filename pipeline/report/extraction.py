@@ -8,7 +8,7 @@ from typing import IO
 
 from pipeline.analysis.classify import WEIGHED, object_classes
 from pipeline.analysis.furniture import DAMPING, FREQUENCY, IN_NO_CASE, IN_THE_OPEN, LEVEL_ERROR, ON_WHEELS, WHAT_HANGS
-from pipeline.analysis.section import OF_CLASS
+from pipeline.analysis.section import OF_CLASS, PLAN
 from pipeline.analysis.sizes import SIZES
 from pipeline.analysis.usual import ON_ANY
 from pipeline.mitigate.by_class import NAMED_FIRST
@@ -140,8 +140,8 @@ def _of_assumptions() -> Iterator[str]:
         ON_WHEELS,
         *WHAT_HANGS.values(),
     )
-    yield from (f"critical section ({kind})" for kind in OF_CLASS)
-    yield from ("wall of its foot", "narrower side", "narrower base side", "half width of what it lies on")
+    yield from (f"critical section ({kind})" for kind in (*OF_CLASS, PLAN))
+    yield from ("wall of its foot", "narrower side", "narrower base side", "base side", "half width of what it lies on")
     yield from (f"smallest size, its {size}" for size in SIZES)
     yield from ("section", "base", "damping of the object itself", "lowest natural frequency")
 

@@ -109,7 +109,7 @@ class ObjectClass(AssumedRow):
     base_ratio: Share
     base_low: Share
     base_high: Share
-    section: Literal["", "stem", "ankles", "foot", "legs", "ring"]
+    section: Literal["", "stem", "ankles", "foot", "legs", "ring", "plan"]
     section_ratio: Share
     section_low: Share
     section_high: Share

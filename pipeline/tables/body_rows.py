@@ -27,6 +27,9 @@ STANDS = ("harness", "costume", "stand")
 ON_EDGE = ("panel", "slab")
 """What hangs by its class and stands on its edge, as deep as it is recorded."""
 
+CYCLES = ("cycle", "cycle_of_parts", "motorcycle", "motorcycle_of_parts")
+"""What stands on two wheels, and on no shelf."""
+
 HELD = ("wind", "stringed", "footwear")
 """What weighs what its kind does, whether it stands or a mount holds it."""
 
@@ -75,7 +78,7 @@ class BodyRow(TableRow):
     base_ratio: Share
     base_low: Share
     base_high: Share
-    section: Literal["", "foot", "ring"]
+    section: Literal["", "foot", "ring", "plan"]
     section_ratio: Share
     section_low: Share
     section_high: Share

@@ -70,6 +70,9 @@ _REACHES = re.compile(r"to\b", re.IGNORECASE)
 _PATTERNED = frozenset("~+/")
 """Signs of entries that are more than words and gaps between them."""
 
+_NEVER = r"(?!)"
+"""What matches nothing: the pattern of no words, which as an empty one would be found in every text."""
+
 _JOINED = re.compile("[\u0e00-\u0eff\u2e80-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
 
@@ -131,7 +134,7 @@ class _OneRow:
 
     def says(self, text: str) -> bool:
         """Whether a text says what the row tells; where it is not so, or only meant to be, nothing holds a thing."""
-        holds = self.row.support in (Support.FASTENED, Support.HUNG, Support.SUSPENDED)
+        holds = self.row.support in (Support.FASTENED, Support.HUNG, Support.SUSPENDED, Support.ISOLATED)
         return any(not (holds and _denied(text, one)) for one in self.found(text))
 
     def denies(self, text: str) -> bool:
@@ -169,7 +172,7 @@ def _any(words: Sequence[str]) -> str:
     # Chinese, Japanese and Korean part no words from each other; of the others one boundary is looked for, not each.
     joined = [inner for word, inner in some if _JOINED.search(word)]
     parted = [inner for word, inner in some if not _JOINED.search(word)]
-    return "|".join((*whole, *joined, *([rf"(?<!\w)(?:{'|'.join(parted)})(?!\w)"] if parted else [])))
+    return "|".join((*whole, *joined, *([rf"(?<!\w)(?:{'|'.join(parted)})(?!\w)"] if parted else []))) or _NEVER
 
 
 def _both(word: str) -> str:
@@ -231,6 +234,9 @@ def told_by(text: str) -> HeldAs:
     if support in (Support.HUNG, Support.SUSPENDED):
         # "On the wall over the sideboard": what hangs stands on nothing.
         found = [row for row in found if row.support in (None, support)]
+    elif support is Support.FREESTANDING:
+        # On a wire stand nothing hangs by a wire.
+        found = [row if row.hanging is None else row.model_copy(update={"hanging": None}) for row in found]
     return _of(found)
 
 

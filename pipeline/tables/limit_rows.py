@@ -37,3 +37,23 @@ def limit(name: str) -> Range:
         For another name.
     """
     return named_ranges(LimitRow, "limits")[name]
+
+
+BRACED = "with the brace"
+"""Ends the note of what a brace changed: the factors are over what bends without any."""
+
+
+HELD_ABOVE = "held above its base too"
+"""The same of what its record says to be held so: by which nobody computed how."""
+
+
+def ends_of(name: str) -> tuple[float, float, float]:
+    """Return low, best and high of a limit of limits.csv.
+
+    Parameters
+    ----------
+    name : str
+        Of its row.
+    """
+    found = limit(name)
+    return found.low, found.value, found.high

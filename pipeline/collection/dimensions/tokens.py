@@ -97,6 +97,13 @@ _SAME_LENGTH = (
     (re.compile(r"(?i)\bhandle to spout\b"), "across across  "),
     (re.compile(r"(?<=\d)\+(?=\s*(?:[x×]|[cm]m\b|in\b|$))"), " "),  # 45+ x 20 cm: what is left of it
 )
+_OTHER_STATE = re.compile(
+    rf"{_BLANK}?\((?=[^()]*\d)(?=[^()]*\b(?:open|opened|unfolded|extended|wings|leaves|offen|geöffnet|aufgeklappt|ouvert|"
+    r"ouverte|ouverts|déplié|aperto|aperta|aperti|abierto|abierta|aberto|aberta|ανοιχτ\w*)\b)[^()]{1,40}\)"
+    r"(?=\s*[x×])",
+    re.IGNORECASE,
+)
+"""What a thing measures in another state, in the middle of its sizes: "320 x 240 (open 460) x 42 cm"."""
 _COLONS = re.compile(r"(?<![\d:.,])\d+(?:[.,]\d+)?(?: ?: ?\d+(?:[.,]\d+)?){1,2}(?= ?[cm]m\b)")
 """Sizes with colons between them, "185:128:54 cm"; 1:10 is a scale."""
 _LABELS_IN_BRACKETS = re.compile(r"\A\s*[\[(][^\W\d_]{1,10}\.?[\])]\s*\d")
@@ -125,6 +132,8 @@ _HALVED = frozenset({"2", "4", "8", "16", "32", "64"})
 """The same of inches."""
 _IN_INCHES = _HALVED | {"3", "5", "6", "10", "12", "20", "100"}
 """What a fraction of an inch may have there at all: 30/40 is none."""
+FINEST = 100
+"""Largest number that stands below the stroke of a fraction."""
 _EXTREME = re.compile(r"(\w{1,4})(max|min)")
 """A label and its qualifier in one word: Dmax, Hmin."""
 _CUT = re.compile(r"\.:?\s*\d")
@@ -231,6 +240,8 @@ def _plain(text: str) -> str:
         text = marked.sub(lambda found: _respelled(found, plain), text)
     for pattern, words in _SAME_LENGTH:
         text = pattern.sub(words, text)
+    if "(" in text:
+        text = _OTHER_STATE.sub(lambda found: " " * len(found[0]), text)
     if ":" in text:
         text = _COLONS.sub(_unscaled, text)
     if _LABELS_IN_BRACKETS.match(text):
@@ -343,14 +354,15 @@ def number_value(text: str, group: int, decimal: str) -> tuple[int, int] | None:
     if group == _VULGAR_ALONE:
         return _VULGAR[text]
     if group == _FRACTION:
-        above, below = re.split(r"\D+", text)
-        return (int(above), int(below)) if int(below) else None
+        part, whole = map(int, re.split(r"\D+", text))
+        # Nothing is divided into more than a hundred: "W 240/460" is from one to the other, and not half a centimetre.
+        return (part, whole) if 0 < whole <= FINEST else None
     match = _MIXED.match(text)
     if match is None:
         return None
-    whole, above, below, vulgar = match.groups()
+    units, above, below, vulgar = match.groups()
     num, den = _VULGAR[vulgar] if vulgar else (int(above), int(below))
-    return (int(whole.replace(",", "")) * den + num, den) if den else None
+    return (int(units.replace(",", "")) * den + num, den) if den else None
 
 
 def _decimal(text: str, decimal: str) -> tuple[int, int] | None:

@@ -41,21 +41,19 @@ from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models.common import N_
 from pipeline.records import Estimate, Scene, Support
 from pipeline.records import phrases as say
+from pipeline.tables.limit_rows import BRACED, HELD_ABOVE, ends_of
 
-LEVER, AT_TWO = (0.15, 0.25, 0.5), (0.04, 0.08, 0.2)
+LEVER, AT_TWO = ends_of("braced_bending"), (0.04, 0.08, 0.2)
 """Bending over that without the brace, held at one height and at two: low, best, high.
 
 The best of the one is the bound of an even bar, and the low end of the other; the others are judgement.
 """
 
-STIFFER, STIFFER_AT_TWO = (2.0, 3.0, 4.39), (3.0, 5.0, 12.0)
+STIFFER, STIFFER_AT_TWO = ends_of("braced_stiffness"), (3.0, 5.0, 12.0)
 """Factor on its lowest natural frequency: low, best, high; the last is of an even bar, the others judgement."""
 
 ABOVE, BELOW, TOP = 1.2, 0.8, 1.6
 """Heights of the brace, and of the lower and the upper of two, over that of the centre of gravity."""
-
-_BRACED = "with the brace"
-"""Ends the note of what a brace changed: the factors are over what bends without any."""
 
 
 class Brace(Measure):
@@ -73,9 +71,9 @@ class Brace(Measure):
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held at its base, its section bending a quarter as much, and swaying faster."""
         scene = held(scene)
-        found = {"lever": _braced(scene.parameters["lever"], self.bending)}
+        found = {"lever": _braced(scene.parameters["lever"], self.bending, LEVER)}
         if "frequency" in scene.parameters:
-            found["frequency"] = _braced(scene.parameters["frequency"], self.stiffer)
+            found["frequency"] = _braced(scene.parameters["frequency"], self.stiffer, STIFFER)
         return with_parameters(scene, **found)
 
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
@@ -86,7 +84,9 @@ class Brace(Measure):
             return NOT_FREE
         if self.row.classes and scene.object_class not in self.row.classes:
             return refused(N_("objects of its kind cannot be braced so"))
-        if "lever" in scene.parameters and _BRACED in scene.parameters["lever"].note:
+        note = scene.parameters["lever"].note if "lever" in scene.parameters else ""
+        # What its record says to be held above its base at one height may be held at two.
+        if BRACED in note or (HELD_ABOVE in note and len(self.heights) == 1):
             return refused(N_("it is braced already"))
         if not knows_section(scene) or "cg_height" not in scene.parameters:
             return UNKNOWN_SECTION
@@ -110,5 +110,10 @@ class Armature(Brace):
     heights = (BELOW, TOP)
 
 
-def _braced(estimate: Estimate, factors: tuple[float, float, float]) -> Estimate:
-    return multiplied(estimate, *factors, ", ".join(filter(None, (estimate.note, _BRACED))))
+def _braced(estimate: Estimate, factors: tuple[float, float, float], once: tuple[float, float, float]) -> Estimate:
+    """Return an estimate with a brace; once: the factors that it has already where it is held above its base."""
+    if HELD_ABOVE in estimate.note:
+        low, best, high = (factor / one for factor, one in zip(factors, once, strict=True))
+    else:
+        low, best, high = factors
+    return multiplied(estimate, low, best, high, ", ".join(filter(None, (estimate.note, BRACED))))

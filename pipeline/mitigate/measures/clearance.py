@@ -28,10 +28,12 @@ what they hang by bears 1.4 times their weight down and sideways together.
 HAND = 0.10
 """Room that is spared around anything [m]; more only around what is itself as wide: judgement."""
 
-TWICE = "Its hook, its chain or cable and their anchor in the ceiling must be rated for at least twice its weight."
+TWICE = (
+    "Its hook, its chain or cable and their anchor in the ceiling or frame must be rated for at least twice its weight."
+)
 FOURFOLD = (
-    "It hangs short, and is tugged when it swings: its hook, its chain or cable and their anchor in the ceiling must "
-    "be rated for at least four times its weight."
+    "It hangs short, and is tugged when it swings: its hook, its chain or cable and their anchor in the ceiling or "
+    "frame must be rated for at least four times its weight."
 )
 TWICE_IN_CASE = (
     "Its hook, its wire or cord and what holds them in the case must be rated for at least twice its weight."

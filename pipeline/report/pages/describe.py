@@ -8,6 +8,7 @@ from math import isfinite, isnan
 from typing import Any
 
 from pipeline.analysis.stakes import worth_of
+from pipeline.analysis.told import unseen_holds
 from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.records import (
     Assessment,
@@ -333,6 +334,7 @@ class Describer:
             decisions=self.decided.of(assessment),
             settled=self.decided.covered(assessment),
             dangers=dangers(ordered),
+            rests_on=tuple(map(self._sayings.assumed, unseen_holds(scene))),
         )
 
     def _measures(self, assessment: Assessment) -> tuple[MeasureView, ...]:

@@ -185,6 +185,7 @@ class ObjectView:
     taken   : how sure its class is, and which other is possible; "" where a person decided
     worth   : what it counts where losses are compared, and why; "" where nothing is recorded of that
     dangers : what it may do by what it does not pass, in a sentence; "" for nothing
+    rests_on : what its result rests on that nobody has looked at: wax or ties of its record, a wall that stands free
     """
 
     number: str
@@ -221,6 +222,7 @@ class ObjectView:
     settled: bool = False
     photo: PhotoView | None = None
     dangers: str = ""
+    rests_on: tuple[str, ...] = ()
 
     @property
     def carded(self) -> bool:
