@@ -23,8 +23,11 @@ _LONGEST = 300
 class KourosError(Exception):
     """Something that a person can mend: the message names file, row or field, what is wrong and the remedy.
 
-    exit_code : of the command that ends with it: 2 usage or settings, 4 a motion was refused, 5 collection unreachable,
-                6 another run holds the lock, 7 input shrank suspiciously
+    Attributes
+    ----------
+    exit_code : ClassVar[int]
+        Of the command that ends with it: 2 usage or settings, 4 a motion was refused, 5 collection unreachable, 6
+        another run holds the lock, 7 input shrank suspiciously.
     """
 
     exit_code: ClassVar[int] = 2

@@ -36,8 +36,12 @@ class ExtensionWarning(UserWarning):
 class ExtensionVersion(NamedTuple):
     """What is installed under an entry point.
 
-    distribution, version : of the package that brings it
-    code                  : digest of its source: a version often stays the same while somebody works on it
+    Attributes
+    ----------
+    distribution, version : str
+        Of the package that brings it.
+    code : str
+        Digest of its source: a version often stays the same while somebody works on it.
     """
 
     group: str

@@ -187,7 +187,11 @@ def _being_written(path: Path, pid: int) -> bool:
 def small_text(file: Path) -> str:
     """Return the text (UTF-8) of a file that a person writes.
 
-    raises : OSError for a file that cannot be read, and for one of more than SMALL bytes; UnicodeDecodeError
+    Raises
+    ------
+    OSError
+        For a file that cannot be read, and for one of more than SMALL bytes.
+    UnicodeDecodeError
     """
     with file.open("rb") as stream:
         data = stream.read(SMALL + 1)
@@ -202,7 +206,10 @@ def resource(*parts: str) -> Path:
     A wheel carries ``schemas``, ``templates``, ``site_motions`` and the units of systemd inside the package; a checkout
     has them beside it.
 
-    raises : FileNotFoundError, naming both places looked in
+    Raises
+    ------
+    FileNotFoundError
+        Naming both places looked in.
     """
     installed = _PACKAGE.joinpath("_resources", *parts)
     if installed.exists():

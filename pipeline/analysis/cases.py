@@ -15,10 +15,16 @@ from pipeline.records import Estimate
 class DemandCase:
     """The analyses of a work that one of the model's outputs counts for.
 
-    analyses : (m,) places in the work's list
-    spans    : their parameter sets
-    capacity : low, best, high, (m,) each
-    estimates: (m) of them, with where they come from
+    Attributes
+    ----------
+    analyses : Indices
+        (m,) places in the work's list.
+    spans : Spans
+        Their parameter sets.
+    capacity : (Array, Array, Array)
+        Low, best, high, (m,) each.
+    estimates : sequence of Estimate
+        (m) of them, with where they come from.
     """
 
     output: str
@@ -106,12 +112,20 @@ def together(each: Sequence[Known]) -> Known:
 class Effort:
     """What the verdicts of one model took.
 
-    analyses : objects times levels
-    decided  : of which by a certificate (a bound), a chart, histories
-    sets     : parameter sets times motions, each once however many objects share it
-    verdicts : how many of these were integrated because a verdict hung on them
-    numbers  : and because an advice or a report needs the number, or what the object does, although the verdict stood
-    needing  : analyses for which any history was run
+    Attributes
+    ----------
+    analyses : int
+        Objects times levels.
+    decided : list of int
+        Of which by a certificate (a bound), a chart, histories.
+    sets : int
+        Parameter sets times motions, each once however many objects share it.
+    verdicts : int
+        How many of these were integrated because a verdict hung on them.
+    numbers : int
+        And because an advice or a report needs the number, or what the object does, although the verdict stood.
+    needing : int
+        Analyses for which any history was run.
     """
 
     analyses: int = 0

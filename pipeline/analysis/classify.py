@@ -41,8 +41,16 @@ class TakenClass(NamedTuple):
 def class_of(item: Item, rules: RuleTable | None = None, decided: tuple[str, str] | None = None) -> TakenClass:
     """Return what an object is taken for.
 
-    rules   : the table that decides it; None for Kouros's own
-    decided : the class that a person gave it, and their words, in place of the rules
+    Parameters
+    ----------
+    rules : RuleTable or None, optional
+        The table that decides it; None for Kouros's own.
+    decided : (str, str) or None, optional
+        The class that a person gave it, and their words, in place of the rules.
+
+    Returns
+    -------
+    TakenClass
     """
     if decided is not None:
         return TakenClass(*decided)
@@ -153,10 +161,23 @@ def classify(
 ) -> Scene:
     """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing.
 
-    rules   : the table that decides the class, with what is assumed of each; None for Kouros's own
-    decided : the class that a person gave it, and their words, in place of the rules
-    house   : what the museum states once for many objects; None for nothing
-    raises  : KeyError for a decided class that is no row of classes.csv
+    Parameters
+    ----------
+    rules : RuleTable or None, optional
+        The table that decides the class, with what is assumed of each; None for Kouros's own.
+    decided : (str, str) or None, optional
+        The class that a person gave it, and their words, in place of the rules.
+    house : HouseRules or None, optional
+        What the museum states once for many objects; None for nothing.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    KeyError
+        For a decided class that is no row of classes.csv.
     """
     made, taken, row, said, values = _known_of(item, rules, decided, house)
     scene = _scene(made, row, taken.words, values, said)

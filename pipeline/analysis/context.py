@@ -16,11 +16,17 @@ _SILENT = Silent()
 class Context:
     """Where an analysis runs, who is told how far it is, and what was computed before.
 
-    executor  : where independent pieces of work run
-    progress  : who is told
-    charts    : where response charts are found and kept; those of this process where none are given
-    histories : those run before, which are taken over, and where those run now are noted; None: all are run.  It
-                belongs to one batch of objects: other batches at the same time have their own
+    Attributes
+    ----------
+    executor : Executor
+        Where independent pieces of work run.
+    progress : Progress
+        Who is told.
+    charts : ChartCache
+        Where response charts are found and kept; those of this process where none are given.
+    histories : Histories or None
+        Those run before, which are taken over, and where those run now are noted; None: all are run.  It belongs to one
+        batch of objects: other batches at the same time have their own.
     """
 
     executor: Executor

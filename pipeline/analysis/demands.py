@@ -49,10 +49,16 @@ class Step(IntEnum):
 class Demands:
     """What is known of one model's parameter sets under one motion, row for row of its work's values.
 
-    step      : (k,) how far each row was taken
-    low, high : by output that counts, (k,): between these lies what a history gives; it is both once it was run
-    note      : (k,) bits, of the bounds
-    trail     : where it is a list, every step is kept there: the fidelity that it ran at, which rows, what was found
+    Attributes
+    ----------
+    step : NDArray[np.int8]
+        (k,) how far each row was taken.
+    low, high : Columns
+        By output that counts, (k,): between these lies what a history gives; it is both once it was run.
+    note : Array
+        (k,) bits, of the bounds.
+    trail : list of (str, Indices, Columns) or None
+        Where it is a list, every step is kept there: the fidelity that it ran at, which rows, what was found.
     """
 
     work: Work

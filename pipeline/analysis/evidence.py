@@ -226,9 +226,14 @@ def signs_of(item: Item, read: Readings) -> tuple[str, ...]:
 class Weights:
     """The weights of tables/class_weights.csv.
 
-    classes : their names
-    of_sign : by sign, the weight for each class
-    agreeing : by field, the weight of the class that it says
+    Attributes
+    ----------
+    classes : tuple of str
+        Their names.
+    of_sign : Mapping[str, NDArray[np.float64]]
+        By sign, the weight for each class.
+    agreeing : mapping of str to float
+        By field, the weight of the class that it says.
     """
 
     classes: tuple[str, ...]
@@ -315,7 +320,14 @@ def chances_of(item: Item, read: Readings, among: RuleTable | None = None) -> tu
     One class alone where an identifier or a rule of the museum's own decides; none where the record names nothing.  An
     object name that names several things, parted by semicolons, is each of them with a share.
 
-    among : the table of rules by which the record was read; None for Kouros's own
+    Parameters
+    ----------
+    among : RuleTable or None, optional
+        The table of rules by which the record was read; None for Kouros's own.
+
+    Returns
+    -------
+    tuple of Chance
     """
     if read.silent and not any((item.title, item.object_name, item.classification, item.material, item.medium)):
         return ()

@@ -30,8 +30,12 @@ _LONGEST = 4000
 class Fault:
     """An object that Kouros failed on.
 
-    words     : what went wrong and where, for people
-    traceback : for who mends it
+    Attributes
+    ----------
+    words : str
+        What went wrong and where, for people.
+    traceback : str
+        For who mends it.
     """
 
     object_number: str
@@ -55,11 +59,25 @@ def apart(
 ) -> list[Made | Exception]:
     """Return what comes of work on each object, or the error that it comes to.
 
-    work    : on many together; gives one for each
-    kind    : those that may well fail alike; after LIKE failures of one kind those that failed together with others of
-              it, and with nothing else, are not tried one by one
-    company : those that must be worked on together where they can; None: the object stands for itself
-    raises  : MemoryError and OSError: what is full or gone is not an object's doing
+    Parameters
+    ----------
+    work : Callable[[Sequence[Some]], Sequence[Made]]
+        On many together; gives one for each.
+    kind : Callable[[Some], Hashable]
+        Those that may well fail alike; after LIKE failures of one kind those that failed together with others of it,
+        and with nothing else, are not tried one by one.
+    company : Callable[[Some], Hashable | None], optional
+        Those that must be worked on together where they can; None: the object stands for itself.
+
+    Returns
+    -------
+    list of Made | Exception
+
+    Raises
+    ------
+    MemoryError
+    OSError
+        What is full or gone is not an object's doing.
     """
     found: dict[int, Made | Exception] = {}
     failed: Counter[Hashable] = Counter()
@@ -94,8 +112,21 @@ def apart(
 def sound(work: Callable[[Sequence[Some]], Sequence[Made]], objects: Sequence[Some]) -> list[Made]:
     """Return what comes of work on each object that it does not fail with, for what only needs many of them.
 
-    work   : on many together; gives one for each
-    raises : as `apart`
+    Parameters
+    ----------
+    work : callable
+        On many together; gives one for each.
+    objects : sequence
+        What is worked on.
+
+    Returns
+    -------
+    list
+
+    Raises
+    ------
+    MemoryError, OSError
+        As `apart`.
     """
     return [one for one in apart(work, objects, lambda _: None) if not isinstance(one, Exception)]
 
@@ -103,7 +134,10 @@ def sound(work: Callable[[Sequence[Some]], Sequence[Made]], objects: Sequence[So
 def without_failing(work: Callable[[Sequence[Some]], Made], objects: Sequence[Some]) -> Made:
     """Return what comes of work on many objects together, or, where that fails, on those that it does not fail with.
 
-    raises : as `apart`, and what the work raises even on those
+    Raises
+    ------
+    MemoryError, OSError
+        As `apart`; what the work raises even on those, besides.
     """
     try:
         return work(objects)
@@ -128,9 +162,18 @@ def each_apart(
 ) -> tuple[tuple[Assessment, ...], list[Made]]:
     """Do work on all objects together, without those that it fails with; these say so among their assumptions.
 
-    work    : on scenes and their findings
-    without : what is not known of an object then, in words
-    faults  : what it fails with is added
+    Parameters
+    ----------
+    work
+        On scenes and their findings.
+    without : str
+        What is not known of an object then, in words.
+    faults : list of Fault
+        What it fails with is added.
+
+    Returns
+    -------
+    tuple[tuple[Assessment, ...], list[Made]]
     """
     bad: dict[int, Fault] = {}
 
@@ -173,8 +216,15 @@ def with_fault(assessment: Assessment, words: str, without: str) -> Assessment:
 def fitting(found: Found, work: Callable[[Found], Made], faults: list[Fault]) -> tuple[Found, Made]:
     """Do work on what was found, in which objects that it fails with are told as such.
 
-    returns : what was found as it was worked on, and what came of it
-    raises  : what the work raises even without them
+    Returns
+    -------
+    (Found, Made)
+        What was found as it was worked on, and what came of it.
+
+    Raises
+    ------
+    MemoryError, OSError
+        As `apart`; what the work raises even without those objects, besides.
     """
     try:
         return found, work(found)

@@ -144,10 +144,16 @@ def tilted(found: Mapping[str, Estimate], slope: float, cg_height: Estimate) -> 
 class Bearing(BaseModel):
     """How much of the base that is assumed of an object may really bear (a row of tables/contacts.csv).
 
-    words   : in an object's name, title, medium or display, by which it is known; * is up to three words
-    classes : with words the classes whose words they are, () for any; else those of which it is assumed
-    taller_than : height from which its words count [m]: a mascot of a car does not roll
-    rolling : friction that keeps it from rolling away [-], None where it does not roll
+    Attributes
+    ----------
+    words : Entries
+        In an object's name, title, medium or display, by which it is known; * is up to three words.
+    classes : Entries
+        With words the classes whose words they are, () for any; else those of which it is assumed.
+    taller_than : Number
+        Height from which its words count [m]: a mascot of a car does not roll.
+    rolling : Optional
+        Friction that keeps it from rolling away [-], None where it does not roll.
     """
 
     contact: str

@@ -30,10 +30,16 @@ MOVING = ("displacement",)
 class Place:
     """An object that may move, where it stands in its gallery, and how far it moves at most.
 
-    at     : (2,) m, east and north
-    reach  : m, from its centre to the corner that is furthest out
-    sides  : half width and half depth [m] with the azimuth of the width; None where the azimuth is not known
-    most   : m, how far it moves at most, its uncertain inputs considered
+    Attributes
+    ----------
+    at : Array
+        (2,) m, east and north.
+    reach : float
+        M, from its centre to the corner that is furthest out.
+    sides : (float, float, float) or None
+        Half width and half depth [m] with the azimuth of the width; None where the azimuth is not known.
+    most : float
+        M, how far it moves at most, its uncertain inputs considered.
     """
 
     index: int

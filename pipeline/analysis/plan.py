@@ -22,9 +22,13 @@ Indices = NDArray[np.intp]
 class Spans:
     """What analyses look at: parameter sets, first with the best estimates, then at all corners of what is uncertain.
 
-    rows   : (v, a) rows of the work's values; a is 2 where an object is shaken along each of its own axes in turn, of
-             which the larger demand counts
-    starts : (m,) where each analysis begins
+    Attributes
+    ----------
+    rows : Indices
+        (v, a) rows of the work's values; a is 2 where an object is shaken along each of its own axes in turn, of which
+        the larger demand counts.
+    starts : Indices
+        (m,) where each analysis begins.
     """
 
     rows: Indices
@@ -74,11 +78,18 @@ class Spans:
 class Work:
     """All analyses of one model in one kind of furniture: parameter sets, and which of them each scene asked for.
 
-    values : by parameter, (k,) sets, each once for those that ask the same of it
-    angles : (k,) degrees from x towards y along which each is shaken; NaN: in both directions, or the worst counts
-    scenes : (m,) index of the scene of each analysis
-    spans  : which sets each analysis looks at
-    furniture : what they all stand in; None: it does nothing to the shaking
+    Attributes
+    ----------
+    values : mapping of str to Array
+        By parameter, (k,) sets, each once for those that ask the same of it.
+    angles : Array
+        (k,) degrees from x towards y along which each is shaken; NaN: in both directions, or the worst counts.
+    scenes : Indices
+        (m,) index of the scene of each analysis.
+    spans : Spans
+        Which sets each analysis looks at.
+    furniture : FurnitureFilter or None
+        What they all stand in; None: it does nothing to the shaking.
     """
 
     model: Model
@@ -134,7 +145,14 @@ class Plan:
 def plan(scenes: Sequence[Scene], x_azimuth: float = EAST) -> Plan:
     """Choose the models of each scene and gather their parameter sets, each once for all that ask the same of it.
 
-    x_azimuth : degrees clockwise from north of the x axis of the motions
+    Parameters
+    ----------
+    x_azimuth : float, optional
+        Degrees clockwise from north of the x axis of the motions.
+
+    Returns
+    -------
+    Plan
     """
     required, skipped = requirements(scenes)
     work = (

@@ -38,9 +38,14 @@ _BOTH = frozenset({_PASSING, _FAILING})
 class FidelitySearch:
     """One work under the motions of one level, as each variant of its furniture passes them on.
 
-    found   : what is known under each motion of every variant, those by the best estimates first
-    cells   : of each variant, the place in ``found`` of each motion of the level
-    decided : of each analysis of the work, the step at which its verdict stood
+    Attributes
+    ----------
+    found : list of Demands
+        What is known under each motion of every variant, those by the best estimates first.
+    cells : tuple[tuple[int, ...], ...]
+        Of each variant, the place in ``found`` of each motion of the level.
+    decided : NDArray[np.int8]
+        Of each analysis of the work, the step at which its verdict stood.
     """
 
     work: Work

@@ -13,7 +13,7 @@ shape          : all of these measures hold (see `pipeline.analysis.shapes`)
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from pathlib import Path
@@ -191,13 +191,22 @@ class Rule:
 class RuleTable:
     """The rules in order, and where to find those of a word.
 
-    wordless, classed : those that ask for no naming word: of medium and measures only, and of the classification too
-    own     : the names of the museum's own rules, which decide outright
-    spanning : the phrases that a word such as "of" or "de" does not break
-    aat     : every identifier that some rule names
-    by_last : the known words and phrases by their last word
-    endings : the known endings by their last letter, the longest first
-    values  : what is assumed of the classes that the rules name
+    Attributes
+    ----------
+    wordless, classed : tuple of Rule
+        Those that ask for no naming word: of medium and measures only, and of the classification too.
+    own : frozenset of str
+        The names of the museum's own rules, which decide outright.
+    spanning : re.Pattern[str] or None
+        The phrases that a word such as "of" or "de" does not break.
+    aat : frozenset of str
+        Every identifier that some rule names.
+    by_last : Mapping[str, tuple[str, ...]]
+        The known words and phrases by their last word.
+    endings : Mapping[str, tuple[str, ...]]
+        The known endings by their last letter, the longest first.
+    values : AssumedValues
+        What is assumed of the classes that the rules name.
     """
 
     rules: tuple[Rule, ...]
@@ -212,14 +221,48 @@ class RuleTable:
     endings: Mapping[str, tuple[str, ...]]
     values: AssumedValues
 
+    def class_of(self, word: str) -> str:
+        """Return the class of the first rule that a known word, or ending with its asterisk, has.
+
+        Parameters
+        ----------
+        word : str
+            A key of `by_word`, or of `by_ending` behind an asterisk.
+
+        Returns
+        -------
+        str
+        """
+        return (self.by_word.get(word) or self.by_ending[word[1:]])[0].object_class
+
+    def names(self, word: str, classes: Collection[str]) -> bool:
+        """Say whether a word names something of one of these classes.
+
+        Parameters
+        ----------
+        word : str
+            Known or not.
+        classes : collection of str
+            Rows of classes.csv.
+
+        Returns
+        -------
+        bool
+        """
+        return any(rule.object_class in classes for rule in self.by_word.get(word, ()))
+
 
 @dataclass(frozen=True)
 class RuleMatch:
     """The rule that decided, and what in the record made it hold ("" where the row asks for no name).
 
-    word : the naming word that it found, an ending with its asterisk
-    share : how far it is believed: less than 1 where the record's own word is only akin to that one, names other
-            things too, or has words behind it that nobody knows
+    Attributes
+    ----------
+    word : str
+        The naming word that it found, an ending with its asterisk.
+    share : float
+        How far it is believed: less than 1 where the record's own word is only akin to that one, names other things
+        too, or has words behind it that nobody knows.
     """
 
     rule: Rule
@@ -239,9 +282,20 @@ def read_rules(
 ) -> RuleTable:
     """Return rows of a table of rules, ready to match.
 
-    own    : the names of those that are the museum's own
-    raises : TableError naming file, line, rule, column and remedy, for an unknown class or shape, a name used twice,
-             an identifier that is none of the AAT's, a word that cannot match, and a last row with conditions
+    Parameters
+    ----------
+    own : iterable of str, optional
+        The names of those that are the museum's own.
+
+    Returns
+    -------
+    RuleTable
+
+    Raises
+    ------
+    TableError
+        Naming file, line, rule, column and remedy, for an unknown class or shape, a name used twice, an identifier that
+        is none of the AAT's, a word that cannot match, and a last row with conditions.
     """
     return _indexed(_read(rows, values, file), values, file, own)
 
@@ -318,7 +372,10 @@ def _rule(row: _RuleRow, position: int) -> Rule:
 def rules() -> RuleTable:
     """Return Kouros's own table of rules.
 
-    raises : TableError, as read_rules
+    Raises
+    ------
+    TableError
+        As read_rules.
     """
     return read_rules(table("rules"), assumed())
 
@@ -326,9 +383,22 @@ def rules() -> RuleTable:
 def with_own(path: Path | None, values: AssumedValues | None = None) -> RuleTable:
     """Return a museum's own rules, followed by Kouros's; a row of the same name takes the place of Kouros's.
 
-    path   : a CSV file with the columns of tables/rules.csv; None: the museum has no rules of its own
-    values : what is assumed of the classes; None: Kouros's own tables
-    raises : TableError naming file, line, rule, column and remedy; FileNotFoundError
+    Parameters
+    ----------
+    path : Path or None
+        A CSV file with the columns of tables/rules.csv; None: the museum has no rules of its own.
+    values : AssumedValues or None, optional
+        What is assumed of the classes; None: Kouros's own tables.
+
+    Returns
+    -------
+    RuleTable
+
+    Raises
+    ------
+    TableError
+        Naming file, line, rule, column and remedy.
+    FileNotFoundError
     """
     values = values or assumed()
     # A museum's classes are added to Kouros's, or take their place by name: none that Kouros's rules name is missing.

@@ -124,11 +124,18 @@ _BLANK = ("", "(not assigned)", "not assigned", "unclassified", "uncategorized",
 class Readings:
     """What each part of a record says of the class by itself; None for a part that says nothing.
 
-    decided        : the rule that decides where the rules alone do
-    outright       : whether nothing else is asked: an identifier, or a rule of the museum's own
-    name, title    : the rule of the naming word of object name and title
-    classification : the rule of what the museum classes it as
-    medium         : the rule of what it is made of
+    Attributes
+    ----------
+    decided : RuleMatch
+        The rule that decides where the rules alone do.
+    outright : bool
+        Whether nothing else is asked: an identifier, or a rule of the museum's own.
+    name, title : RuleMatch or None
+        The rule of the naming word of object name and title.
+    classification : RuleMatch or None
+        The rule of what the museum classes it as.
+    medium : RuleMatch or None
+        The rule of what it is made of.
     """
 
     decided: RuleMatch
@@ -175,7 +182,14 @@ def as_classed(item: Item) -> Item:
 
     Where its object name is only a kind of things, such as ceramics, that is its classification.
 
-    item : any
+    Parameters
+    ----------
+    item : Item
+        Any.
+
+    Returns
+    -------
+    Item
     """
     item = _with_technique(item)
     if item.classification or not item.title or fold(item.object_name).strip() not in KINDS_ONLY:
@@ -381,7 +395,7 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
     start = of.spanning.match(folded) if of.spanning is not None else None
     kind = _KIND.search(folded)
-    out = [] if kind is None else [one for one in _spelt(of, kind.group(1).split()) if _pictures(of, one)]
+    out = [] if kind is None else [one for one in _spelt(of, kind.group(1).split()) if of.names(one, PICTURES)]
     out += [] if start is None else _spelt(of, WORD.findall(start.group()))
     small = _MODEL.match(folded)
     out += [] if small is None or BREAK.match(folded, small.end() - 1) else _spelt(of, [small.group(1)])
@@ -403,7 +417,7 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
         lidded = []
     for part in parts:
         found = WORD.findall(part)
-        if len(found) > 1 and found[-1] in _ON_WALLS and found[-2] in of.by_word and _relief(of, found[-2]):
+        if len(found) > 1 and found[-1] in _ON_WALLS and found[-2] in of.by_word and of.names(found[-2], ("relief",)):
             found.pop()
         said = [
             (end - 1 - len(before), word)
@@ -427,11 +441,11 @@ def _believed_at(text: str, word: str, of: RuleTable) -> float:
     folded = _plain(text)
     part, kind = _PART.search(folded), _KIND.search(folded)
     lone = " " in word or IDEOGRAPH.search(word) or re.search(r"[/;|]", folded)
-    if (part and part.group(1) == word) or (kind and _pictures(of, word) and kind.group(1).startswith(word)):
+    if (part and part.group(1) == word) or (kind and of.names(word, PICTURES) and kind.group(1).startswith(word)):
         return 1.0
     inner = [] if kind is None else WORD.findall(kind.group(1))
     said = [one for before, one in known(of, inner[-1]) if not before] if inner else []
-    if said and _class_of(of, said[0]) != _class_of(of, word):
+    if said and of.class_of(said[0]) != of.class_of(word):
         return _HALF_KNOWN  # Sledge (hammer), Canister (shot)
     if lone:
         return 1.0
@@ -442,13 +456,8 @@ def _believed_at(text: str, word: str, of: RuleTable) -> float:
             if not all(map(_ADJECTIVE.search, behind)):
                 return _HALF_KNOWN
             ahead = (known_one for one in first[:at] for before, known_one in known(of, one) if not before)
-            return _AFTER_ANOTHER if any(_class_of(of, one) != _class_of(of, word) for one in ahead) else 1.0
+            return _AFTER_ANOTHER if any(of.class_of(one) != of.class_of(word) for one in ahead) else 1.0
     return _HALF_KNOWN
-
-
-def _class_of(of: RuleTable, word: str) -> str:
-    """Return the class of the first rule that a known word or *ending has."""
-    return (of.by_word.get(word) or of.by_ending[word[1:]])[0].object_class
 
 
 def _parts(folded: str) -> Iterator[str]:
@@ -460,16 +469,6 @@ def _parts(folded: str) -> Iterator[str]:
             yield part
         if mark is not None:
             at, behind = mark.end(), mark.group()
-
-
-def _relief(of: RuleTable, word: str) -> bool:
-    """Whether a word names what is carved of a wall."""
-    return any(rule.object_class == "relief" for rule in of.by_word[word])
-
-
-def _pictures(of: RuleTable, word: str) -> bool:
-    """Whether a word names what hangs flat, whatever it shows."""
-    return any(rule.object_class in PICTURES for rule in of.by_word.get(word, ()))
 
 
 def _inverted(folded: str, of: RuleTable) -> Iterator[str]:

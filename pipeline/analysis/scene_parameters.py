@@ -36,7 +36,14 @@ _CORD = 1.0
 def material_of(item: Item, values: AssumedValues | None = None) -> Material:
     """Return what an object is made of: the material whose word stands first in its record.
 
-    values : the tables that know the words; None for Kouros's own
+    Parameters
+    ----------
+    values : AssumedValues or None, optional
+        The tables that know the words; None for Kouros's own.
+
+    Returns
+    -------
+    Material
     """
     values = values or assumed()
     return values.material_in(item.material or item.medium) or values.materials[UNKNOWN]

@@ -38,10 +38,16 @@ SOUND = 0.5
 class Measurable:
     """A field of the record that a person can fill in (a row of tables/survey.csv).
 
-    parameters : of the scene, that hang on it; none for a field that is only ever missing
-    factor     : the field's number for a number 1 of the first parameter; None where it cannot be said in one number
-    heaviest   : kg of an object that may be handled for it; None where nothing is handled
-    how        : how it is measured, for the sheet
+    Attributes
+    ----------
+    parameters : Entries
+        Of the scene, that hang on it; none for a field that is only ever missing.
+    factor : Optional
+        The field's number for a number 1 of the first parameter; None where it cannot be said in one number.
+    heaviest : Optional
+        kg of an object that may be handled for it; None where nothing is handled.
+    how : str
+        How it is measured, for the sheet.
     """
 
     field: str

@@ -33,7 +33,14 @@ def _base_in(values: AssumedValues, text: str) -> str:
 def base_of(values: AssumedValues, item: Item) -> str:
     """Return as what a thing slides by the words for its base; "" where there are none.
 
-    values : the tables that know the words
+    Parameters
+    ----------
+    values : AssumedValues
+        The tables that know the words.
+
+    Returns
+    -------
+    str
     """
     told = item.base_material.strip()
     known = {row.pair[0] for row in values.friction}
@@ -85,7 +92,14 @@ _BOOKSHELF = re.compile(
 def friction_of(values: AssumedValues, material: str, surface: str, furniture: Furniture | None = None) -> Estimate:
     """Return the friction of a material on a surface [-]; "" for either where nobody says it.
 
-    furniture : on which the surface is, of one that nobody says
+    Parameters
+    ----------
+    furniture : Furniture or None, optional
+        On which the surface is, of one that nobody says.
+
+    Returns
+    -------
+    Estimate
     """
     rows = values.friction_of(material, surface, furniture)
     found = span(rows)

@@ -21,10 +21,15 @@ Mask = NDArray[np.bool_]
 class LevelMotions:
     """The motions of one level of the site, and how their demands are combined ("max" or "mean").
 
-    x_azimuth : degrees clockwise from north of their x axis
-    others    : where something that is uncertain passes them on, the same motions as its other variants do; ``motions``
-                are those by its best estimates then
-    site      : those of the floor, where something passes them on; findings are of these, whatever passes them on
+    Attributes
+    ----------
+    x_azimuth : float
+        Degrees clockwise from north of their x axis.
+    others : tuple[tuple[Motion, ...], ...]
+        Where something that is uncertain passes them on, the same motions as its other variants do; ``motions`` are
+        those by its best estimates then.
+    site : tuple of Motion
+        Those of the floor, where something passes them on; findings are of these, whatever passes them on.
     """
 
     name: str
@@ -62,8 +67,16 @@ class LevelMotions:
     def through(self, passed: Callable[[Motion], Sequence[Motion]], executor: Executor | None = None) -> LevelMotions:
         """Return the level as it is passed on.
 
-        passed   : a motion -> the same as each variant passes it on, the best estimates first; always as many
-        executor : where that is found; None: here
+        Parameters
+        ----------
+        passed : Callable[[Motion], Sequence[Motion]]
+            A motion -> the same as each variant passes it on, the best estimates first; always as many.
+        executor : Executor or None, optional
+            Where that is found; None: here.
+
+        Returns
+        -------
+        LevelMotions
         """
         every = executor.map if executor else lambda work, some: [work(one) for one in some]
         each = [every(passed, some) for some in self.variants]

@@ -50,7 +50,10 @@ def order(one: Listed) -> tuple[bool, str, str, str]:
 class Listing(Sequence[Listed]):
     """Objects in columns.
 
-    table : pyarrow.Table with the columns of `Listed`
+    Attributes
+    ----------
+    table : Any
+        pyarrow.Table with the columns of `Listed`.
     """
 
     table: Any

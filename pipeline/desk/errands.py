@@ -19,7 +19,10 @@ KINDS = ("take", "give", "done", "back")
 class ErrandEntry:
     """An errand in a list: what it is, whose it is now, and all that was said of it.
 
-    state : "open", "taken" or "done"
+    Attributes
+    ----------
+    state : str
+        "open", "taken" or "done".
     """
 
     key: str

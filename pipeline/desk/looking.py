@@ -109,7 +109,14 @@ def object_context(
 ) -> dict[str, Any]:
     """Return what an object's page shows, with what somebody entered that could not be saved.
 
-    section : which form is open
+    Parameters
+    ----------
+    section : str, optional
+        Which form is open.
+
+    Returns
+    -------
+    mapping of str to Any
     """
     facts, run = asked.site.facts(object_number, asked.newest), asked.site.run
     listed = run.by_number.get(object_number)

@@ -8,7 +8,14 @@ from pipeline.report.units import Units, significant
 def cell_unit(unit: str, units: Units) -> str:
     """Return the unit in which a cell is filled in, for one of Kouros: pounds where lengths are in inches or feet.
 
-    unit : SI, or "-"
+    Parameters
+    ----------
+    unit : str
+        SI, or "-".
+
+    Returns
+    -------
+    str
     """
     return units.symbol(unit)
 

@@ -45,8 +45,12 @@ KEPT = 2_000
 class CellView:
     """A field of the record to fill in: what it is, its unit, what is recorded, and what is taken for it now.
 
-    choices : the words it may be; none for a number
-    wished  : whether measuring it is worth something
+    Attributes
+    ----------
+    choices : tuple of str
+        The words it may be; none for a number.
+    wished : bool
+        Whether measuring it is worth something.
     """
 
     field: str

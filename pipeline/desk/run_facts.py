@@ -69,7 +69,10 @@ class WordIndex:
     def having(self, parts: Sequence[str]) -> Iterator[int]:
         """Yield the places of the lines that have all parts in their words, in order.
 
-        parts : without spaces, one at least
+        Parameters
+        ----------
+        parts : sequence of str
+            Without spaces, one at least.
         """
         rarest = min((self._words_with(part) for part in parts), key=len)
         if len(rarest) > _FEW:
@@ -112,7 +115,10 @@ _COLUMNS = (
 class ListedObject:
     """An object in a list: ``open_for`` is the field whose measurement may change what is decided, "" for none.
 
-    rank : its place among all by urgency; the last of all where it has none
+    Attributes
+    ----------
+    rank : int
+        Its place among all by urgency; the last of all where it has none.
     """
 
     number: str
@@ -180,7 +186,10 @@ class RunFacts:
     def found(self, words: str, gallery: str = "", state: str = "") -> Iterator[ListedObject]:
         """Yield the objects that have all words in number, title or gallery; one whose number it is comes first.
 
-        gallery, state : only there, only these; "" for all
+        Parameters
+        ----------
+        gallery, state : str
+            Only there, only these; "" for all.
         """
         asked = folded(words)
         exact = self.by_number.get(words.strip())

@@ -43,10 +43,16 @@ class FoundView:
 class ShakenObject:
     """An object of a gallery after an earthquake.
 
-    at      : its place on the page, by which it is found again
-    told    : what has probably become of it, in words
-    chance  : of any harm, as a share of a hundred; "" where nobody knows
-    version : id of the newest report, which whoever reports must have seen
+    Attributes
+    ----------
+    at : int
+        Its place on the page, by which it is found again.
+    told : str
+        What has probably become of it, in words.
+    chance : str
+        Of any harm, as a share of a hundred; "" where nobody knows.
+    version : int
+        Id of the newest report, which whoever reports must have seen.
     """
 
     at: int

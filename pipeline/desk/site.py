@@ -199,7 +199,10 @@ class KeptPages:
     def keep(self, state: Hashable, key: Hashable, page: str) -> None:
         """Keep a page.
 
-        state : as it was before anything of the page was looked up, so that what changed meanwhile is shown next time
+        Parameters
+        ----------
+        state : Hashable
+            As it was before anything of the page was looked up, so that what changed meanwhile is shown next time.
         """
         with self._lock:
             if state != self._state:

@@ -25,8 +25,21 @@ HEAD = struct.Struct("<Q")
 def small(data: bytes, side: int, most_pixels: int) -> tuple[bytes, int, int]:
     """Return a picture of at most ``side`` pixels a side as JPEG, with its width and height.
 
-    data    : a photograph
-    raises  : whatever the decoder does; ValueError for one of more than ``most_pixels``
+    Parameters
+    ----------
+    data : bytes
+        A photograph.
+    side, most_pixels : int
+        Of what is returned at most, and of the photograph at most.
+
+    Returns
+    -------
+    (bytes, int, int)
+
+    Raises
+    ------
+    ValueError
+        For one of more than ``most_pixels``; what the decoder raises besides.
     """
     Image.MAX_IMAGE_PIXELS = None  # Pillow's own limit warns first: ours is asked below, before anything is decoded.
     with Image.open(BytesIO(data), formats=FORMATS) as photograph:

@@ -32,7 +32,14 @@ def _at_best(finding: Finding) -> bool:
 def checks(findings: Sequence[Finding], before: Sequence[Finding], *, at_best: bool = False) -> tuple[Check, ...]:
     """Return the findings of a trial as evidence, each beside the demand before the measure.
 
-    at_best : whether they were asked to pass by the best estimates only
+    Parameters
+    ----------
+    at_best : bool, optional
+        Whether they were asked to pass by the best estimates only.
+
+    Returns
+    -------
+    tuple of Check
     """
     demands = {finding.model: finding.demand for finding in before}
     every = (
@@ -85,7 +92,14 @@ def shortfall(
 ) -> str:
     """Say in words why a candidate is not enough: the first trial that fails, or a check.
 
-    left : of each trial that was drawn how likely harm remains, by level
+    Parameters
+    ----------
+    left : Mapping[int, Mapping[str, Likelihood]]
+        Of each trial that was drawn how likely harm remains, by level.
+
+    Returns
+    -------
+    str
     """
     if failing:
         remains = [one.expected for one in left.get(id(failing[0]), {}).values()]

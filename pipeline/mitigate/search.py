@@ -285,7 +285,10 @@ class _Search:
     def settles(self, *, enough: bool = False) -> None:
         """Let what passes by the best estimates stand, where nothing that fastens is sure.
 
-        enough : only what leaves as little harm as is wanted
+        Parameters
+        ----------
+        enough : bool, optional
+            Only what leaves as little harm as is wanted.
         """
         for index, found in list(self.at_best.items()):
             if enough and self.runner.aims and not self.runner.reaches_aim(found.remaining):

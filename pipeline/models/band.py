@@ -85,7 +85,14 @@ class _Pieces:
     def of(self, shaking: Callable[[], Excitation], places: Sequence[_Place]) -> list[_Piece]:
         """Return the natural logarithms of frequencies over pieces and a step beyond, and the spectrum there.
 
-        shaking : gives what they are spectra of, where one is not known yet
+        Parameters
+        ----------
+        shaking : Callable[[], Excitation]
+            Gives what they are spectra of, where one is not known yet.
+
+        Returns
+        -------
+        list of _Piece
         """
         with self._lock:
             there = {place: self._found[place] for place in places if place in self._found}

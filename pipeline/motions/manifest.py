@@ -42,9 +42,14 @@ GROUND_FLOOR = "ground"
 class TargetTable(Table):
     """A target response spectrum: PSA in g at periods in s, read on straight lines in log-log.
 
-    period_range_s : compared from here to there; left out, the whole target
-    component      : of the motion's spectrum that is brought to the target
-    measure        : "log" fits the ratio, "linear" the difference, by least squares
+    Attributes
+    ----------
+    period_range_s
+        Compared from here to there; left out, the whole target.
+    component
+        Of the motion's spectrum that is brought to the target.
+    measure
+        "log" fits the ratio, "linear" the difference, by least squares.
     """
 
     periods_s: tuple[Annotated[float, Field(gt=0.0)], ...] = Field(min_length=2)
@@ -79,10 +84,15 @@ LEAST_FOR_MEAN = 7
 class LevelTable(Table):
     """A level of shaking: its records, how several are combined, and the engineer who answers for it.
 
-    combine : "max" (the worst record decides) or "mean" (an object overturns when half the records overturn it), which
-              codes allow for seven records and more
-    target  : the spectrum that records with `scale_to_target` are brought to
-    approved_by, approved_on : both or neither; reports say so when nobody answers
+    Attributes
+    ----------
+    combine
+        "max" (the worst record decides) or "mean" (an object overturns when half the records overturn it), which codes
+        allow for seven records and more.
+    target : TargetTable or None
+        The spectrum that records with `scale_to_target` are brought to.
+    approved_by, approved_on
+        Both or neither; reports say so when nobody answers.
     """
 
     name: Text
@@ -176,10 +186,14 @@ class FloorTable(Table):
 class SiteTable(Table):
     """Where the site is: degrees north and east, and the shear-wave velocity of the upper 30 m in m/s where known.
 
-    x_azimuth : degrees clockwise from north of the x axis that motions are turned to; east where left out, else an axis
-                of the building
-    hazard    : CSV file beside the manifest with the hazard curve of the ground, see `hazard_file`; it takes the place
-                of the curve through the levels' return periods
+    Attributes
+    ----------
+    x_azimuth : float
+        Degrees clockwise from north of the x axis that motions are turned to; east where left out, else an axis of the
+        building.
+    hazard : FileName or None
+        CSV file beside the manifest with the hazard curve of the ground, see `hazard_file`; it takes the place of the
+        curve through the levels' return periods.
     """
 
     name: Text

@@ -89,7 +89,10 @@ class Horizontal(Table):
 class Vertical(Table):
     """A vertical channel: positive up or positive down; left out, the file's header says it.
 
-    silent : as of `Horizontal`
+    Attributes
+    ----------
+    silent : bool
+        As of `Horizontal`.
     """
 
     axis: Literal["z"]
@@ -103,10 +106,15 @@ Component = Annotated[Horizontal | Vertical, Discriminator("axis")]
 class BaselineTable(Table):
     """How the baseline of a raw record is corrected (see `baseline`); left out, a straight line is removed.
 
-    method   : none; mean; pre-event (the mean of the first `pre_event_s`); linear; polynomial; two-segment (Iwan et al.
-               1985, Boore 2001), which keeps a permanent displacement, so that no corner is chosen for it
-    degree, of : of the polynomial, and whether it is fitted to the acceleration or the velocity
-    t1_s, t2_s, fit_from_s : of the two segments; left out, they follow from the record
+    Attributes
+    ----------
+    method
+        None; mean; pre-event (the mean of the first `pre_event_s`); linear; polynomial; two-segment (Iwan et al. 1985,
+        Boore 2001), which keeps a permanent displacement, so that no corner is chosen for it.
+    degree, of
+        Of the polynomial, and whether it is fitted to the acceleration or the velocity.
+    t1_s, t2_s, fit_from_s : float or None
+        Of the two segments; left out, they follow from the record.
     """
 
     method: Literal["none", "mean", "pre-event", "linear", "polynomial", "two-segment"]
@@ -132,9 +140,14 @@ class BaselineTable(Table):
 class EventTable(Table):
     """The earthquake of a record, as a catalogue or the record's own file has it.
 
-    time           : of its origin, with the offset of its zone
-    latitude, longitude, depth_km : of its hypocentre, degrees north and east
-    magnitude_type : such as "Mw"
+    Attributes
+    ----------
+    time : AwareDatetime or None
+        Of its origin, with the offset of its zone.
+    latitude, longitude, depth_km : float or None
+        Of its hypocentre, degrees north and east.
+    magnitude_type : Text or None
+        Such as "Mw".
     """
 
     name: Text | None = None
@@ -159,32 +172,49 @@ class StationTable(Table):
 class Record(Table):
     """One record of three components, or of two and no vertical, and what is to be done to it.
 
-    files      : paths inside the site's folder; `response` is their StationXML, where they hold counts
-    components : file name, channel code or full channel id -> axis and orientation; x, y and z once each
-    vertical   : "absent" where no vertical was recorded: components are x and y then, and the motion has no vertical;
-                 "estimated", one is made from the larger horizontal by the ratio of vertical to horizontal spectra of
-                 EN 1998-1 (see `vertical`), or the z that is given was made so
-    units      : only where the file itself does not say
-    processed  : whether the agency has filtered it already; such a record is never filtered again.  Left out, the
-                 files' headers say it
-    baseline   : of a raw record; pre_event_s: s of noise before the event at its start
-    highpass_hz: of a raw record: a corner; "auto" or left out, one is chosen from length, noise and tail (see
-                 `corners.choose_corner`); "none", it is not filtered
-    resample_s : another time step
-    scale, scale_to_pga_g, scale_to_target : one factor for all three components; the PGA in g that the larger recorded
-                 horizontal component shall have; or the factor that fits the level's target spectrum best.  None of
-                 them leaves the record as it was recorded
-    v_max_cm_s : the velocity for the overturning criterion, after scaling, where it is not to be the PGV
-    window_s   : start and end in s from the first common sample, or from origin_time.  It goes first: what lies more
-                 than 300 s outside of it is not read, and only filters see what lies nearer
-    origin_time: of the earthquake, in UTC, where the files hold more than one: from it window_s is counted; without
-                 window_s it is that of the earthquake found there
-    start_m_s  : of a processed record, the velocity in m/s that x, y and z begin with, which the samples do not tell
-    event, station, distance_km : the earthquake, the station, and how far from each other they are: PGA and PGV are
-                 held against what these let expect, and nothing else is computed of them.  The distance is the
-                 epicentral one, or as the record's source gives it
-    accept     : refusals that a person has judged and overruled, each with the reason
-    sha256     : of every file named, the response included
+    Attributes
+    ----------
+    files : tuple of FileName
+        Paths inside the site's folder; `response` is their StationXML, where they hold counts.
+    components : mapping of Text to Component
+        File name, channel code or full channel id -> axis and orientation; x, y and z once each.
+    vertical
+        "absent" where no vertical was recorded: components are x and y then, and the motion has no vertical;
+        "estimated", one is made from the larger horizontal by the ratio of vertical to horizontal spectra of EN 1998-1
+        (see `vertical`), or the z that is given was made so.
+    units : Unit or None
+        Only where the file itself does not say.
+    processed : bool or None
+        Whether the agency has filtered it already; such a record is never filtered again.  Left out, the files' headers
+        say it.
+    baseline : BaselineTable or None
+        Of a raw record; pre_event_s: s of noise before the event at its start.
+    highpass_hz
+        Of a raw record: a corner; "auto" or left out, one is chosen from length, noise and tail (see
+        `corners.choose_corner`); "none", it is not filtered.
+    resample_s : float or None
+        Another time step.
+    scale, scale_to_pga_g, scale_to_target
+        One factor for all three components; the PGA in g that the larger recorded horizontal component shall have; or
+        the factor that fits the level's target spectrum best.  None of them leaves the record as it was recorded.
+    v_max_cm_s : float or None
+        The velocity for the overturning criterion, after scaling, where it is not to be the PGV.
+    window_s
+        Start and end in s from the first common sample, or from origin_time.  It goes first: what lies more than 300 s
+        outside of it is not read, and only filters see what lies nearer.
+    origin_time : Time or None
+        Of the earthquake, in UTC, where the files hold more than one: from it window_s is counted; without window_s it
+        is that of the earthquake found there.
+    start_m_s : (float, float, float) or None
+        Of a processed record, the velocity in m/s that x, y and z begin with, which the samples do not tell.
+    event, station, distance_km
+        The earthquake, the station, and how far from each other they are: PGA and PGV are held against what these let
+        expect, and nothing else is computed of them.  The distance is the epicentral one, or as the record's source
+        gives it.
+    accept : mapping of Judgement to Text
+        Refusals that a person has judged and overruled, each with the reason.
+    sha256 : mapping of FileName to Digest
+        Of every file named, the response included.
     """
 
     model_config = ConfigDict(

@@ -86,10 +86,20 @@ def place(
 ) -> Placed:
     """Return an object as people say that it is and stands: of the class decided, with the measures installed.
 
-    decisions : those in force about it
-    measures  : what the museum has; None: Kouros's own
-    house     : what the museum states once for many objects; None: nothing
-    assessed  : whether anything is found of it, so that what else it may be counts
+    Parameters
+    ----------
+    decisions : sequence of Decision
+        Those in force about it.
+    measures : MeasureCatalogue or None, optional
+        What the museum has; None: Kouros's own.
+    house : HouseRules or None, optional
+        What the museum states once for many objects; None: nothing.
+    assessed : bool, optional
+        Whether anything is found of it, so that what else it may be counts.
+
+    Returns
+    -------
+    Placed
     """
     scene = classify(item, rules, decided_class(decisions), house)
     there = [InstalledMeasure(d.measure, d.parameters, d.by) for d in decisions if d.kind is DecisionKind.INSTALLED]
@@ -257,7 +267,14 @@ def placed_each(
 ) -> list[Placed | Exception]:
     """Return each object as it stands, or the error that placing it came to.
 
-    assessed : whether anything is found of them
+    Parameters
+    ----------
+    assessed : bool, optional
+        Whether anything is found of them.
+
+    Returns
+    -------
+    list of Placed | Exception
     """
     rules, measures, house = context.rules, context.measures, context.house
 
@@ -366,8 +383,16 @@ def advised(
 ) -> tuple[Sequence[tuple[Likelihood, ...]], list[list[Recommendation]]]:
     """Return how likely objects come to harm, and what is advised for them: by that, or else by verdicts.
 
-    objects  : as they stand, with their scenes and what was found of them under these levels
-    sampling : no samples where nobody asks how likely harm is
+    Parameters
+    ----------
+    objects : sequence of Placed
+        As they stand, with their scenes and what was found of them under these levels.
+    sampling : Sampling
+        No samples where nobody asks how likely harm is.
+
+    Returns
+    -------
+    tuple[Sequence[tuple[Likelihood, ...]], list[list[Recommendation]]]
     """
     if not sampling.samples:
         advice = advise(scenes, findings, levels, working, numerics, catalogue=measures, transmitted=transmitted)

@@ -35,16 +35,28 @@ from pipeline.settings import Analysis
 class RunContext:
     """What everything that is done in a run shares.
 
-    head      : the run without its objects: its motions and its charts, what pages say of it
-    floors   : the floors by name
-    sampling  : how probabilities are found; no samples: they are not
-    surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
-    house     : the museum's house rules
-    stores    : whether what is not on display is assessed too
-    admitted  : which response charts are built (see `response_charts.ChartCache`); None: those that pay
-    kept      : folder of the cache; None: in memory only
-    threads   : of one who works
-    stock     : what an earthquake's answer needs of each page rests on; None: it is not kept
+    Attributes
+    ----------
+    head : RunRecord
+        The run without its objects: its motions and its charts, what pages say of it.
+    floors : mapping of str to Floor
+        The floors by name.
+    sampling : Sampling
+        How probabilities are found; no samples: they are not.
+    surveyed, fragile : bool
+        Whether to find out what is worth measuring, and from what shaking objects fail.
+    house : HouseRules or None
+        The museum's house rules.
+    stores : bool
+        Whether what is not on display is assessed too.
+    admitted : frozenset of str or None
+        Which response charts are built (see `response_charts.ChartCache`); None: those that pay.
+    kept : Path or None
+        Folder of the cache; None: in memory only.
+    threads : int
+        Of one who works.
+    stock : StockTerms or None
+        What an earthquake's answer needs of each page rests on; None: it is not kept.
     """
 
     head: RunRecord
@@ -116,7 +128,10 @@ class RunContext:
     def renderer(self) -> PageRenderer:
         """What draws the pages.
 
-        raises : ReportError for a language without a catalogue
+        Raises
+        ------
+        ReportError
+            For a language without a catalogue.
         """
         return PageRenderer(
             self.head, self.units, language(self.tongue, self.catalogues), self.paper, bool(self.sampling.samples)

@@ -21,9 +21,14 @@ from pipeline.settings import Floors, Settings, SettingsError
 class Floor:
     """A floor that objects stand on, with its levels of shaking and the places of its objects in the list of all.
 
-    name      : "" for the ground
-    x_azimuth : degrees clockwise from north of the x axis of the motions
-    hazard    : curve of the floor, where the site's manifest names one
+    Attributes
+    ----------
+    name : str
+        "" for the ground.
+    x_azimuth : float
+        Degrees clockwise from north of the x axis of the motions.
+    hazard : HazardCurve or None
+        Curve of the floor, where the site's manifest names one.
     """
 
     name: str
@@ -61,7 +66,10 @@ class Floor:
 def floors_with(settings: Settings, site: Site, items: Sequence[Item]) -> list[Floor]:
     """Sort the objects by the floor that their gallery stands on, the ground first; each on one.
 
-    raises : as `floors_of`
+    Raises
+    ------
+    SettingsError, MotionError
+        As `floors_of`.
     """
     places: dict[str, list[int]] = {}
     for index, item in enumerate(items):
@@ -73,7 +81,12 @@ def floors_with(settings: Settings, site: Site, items: Sequence[Item]) -> list[F
 def floors_of(settings: Settings, site: Site, galleries: Collection[str]) -> dict[str, Floor]:
     """Return the floors that some galleries stand on, by name, the ground first; without any objects.
 
-    raises : SettingsError for a floor that the manifest does not have; MotionError for a record of a floor
+    Raises
+    ------
+    SettingsError
+        For a floor that the manifest does not have.
+    MotionError
+        For a record of a floor.
     """
     known(settings, site)
     wanted = {settings.floors.of(gallery) or GROUND_FLOOR for gallery in galleries}
@@ -111,7 +124,10 @@ def floor_name(settings: Settings, gallery: str) -> str:
 def known(settings: Settings, site: Site) -> None:
     """Check that the floors of the settings are floors of the manifest.
 
-    raises : SettingsError naming the floor and those that there are
+    Raises
+    ------
+    SettingsError
+        Naming the floor and those that there are.
     """
     there = (GROUND_FLOOR, *site.floors)
     for name in settings.floors.root:

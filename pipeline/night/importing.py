@@ -82,8 +82,12 @@ LOG_COLUMNS = ("row", "line", "object_number", "field", "what", "message", "reme
 class Imported:
     """What an import read, and what it changes, or would change if it were not a dry run.
 
-    held : the version that a person went back to from this very source; a night leaves it there, and changes nothing
-    log  : the file of the log; None for a dry run, and where nothing changed
+    Attributes
+    ----------
+    held : int or None
+        The version that a person went back to from this very source; a night leaves it there, and changes nothing.
+    log : Path or None
+        The file of the log; None for a dry run, and where nothing changed.
     """
 
     reading: Reading
@@ -137,9 +141,14 @@ def presets() -> dict[str, Preset]:
 class Proposed:
     """A guessed mapping, and what it makes of the source: what was read, and some of the objects in words.
 
-    name  : for a file with the mapping, without its ending
-    shown : the source in messages, without secrets
-    unknown : what is to be said of words that name no class, as `unknown_names` says it
+    Attributes
+    ----------
+    name : str
+        For a file with the mapping, without its ending.
+    shown : str
+        The source in messages, without secrets.
+    unknown : str
+        What is to be said of words that name no class, as `unknown_names` says it.
     """
 
     name: str
@@ -170,8 +179,19 @@ def proposed(
 ) -> Proposed:
     """Guess a mapping for a file or a database and read it with that; nothing is written.
 
-    table, choices : see `guess`
-    raises : CollectionError for a source that cannot be read
+    Parameters
+    ----------
+    table, choices
+        See `guess`.
+
+    Returns
+    -------
+    Proposed
+
+    Raises
+    ------
+    CollectionError
+        For a source that cannot be read.
     """
     from pipeline.collection.guess import guess
 
@@ -246,11 +266,25 @@ def import_collection(
 ) -> Imported:
     """Read a museum's records and make the inventory what they say, all of it or nothing.
 
-    source  : path of a file, or the URL of a database
-    nightly : nobody is there to decide: a version that a person went back to stays until the source changes; and nobody
-              looks on: rows that are as they were at the last reading are not read again
-    raises  : CollectionError, MappingError and ShrunkError, as reading and writing do, and ContradictionError where the
-              source contradicts itself in most rows and the mapping does not say what holds; nothing is written then
+    Parameters
+    ----------
+    source : str | Path
+        Path of a file, or the URL of a database.
+    nightly : bool, optional
+        Nobody is there to decide: a version that a person went back to stays until the source changes; and nobody looks
+        on: rows that are as they were at the last reading are not read again.
+
+    Returns
+    -------
+    Imported
+
+    Raises
+    ------
+    CollectionError
+    MappingError
+    ShrunkError
+        As reading and writing do, and ContradictionError where the source contradicts itself in most rows and the
+        mapping does not say what holds; nothing is written then.
     """
     key = source_key(workspace.settings, source, mapping)
     known = known_rows(workspace.engine, key) if nightly else None
@@ -276,7 +310,10 @@ def import_collection(
 def go_back(workspace: Workspace, version: int, *, dry_run: bool = False) -> Difference:
     """Make the inventory what it was after an earlier import; a dry run only says what that would change.
 
-    raises : CollectionError for a version that does not exist
+    Raises
+    ------
+    CollectionError
+        For a version that does not exist.
     """
     return return_to(workspace.engine, version, dry_run=dry_run)
 

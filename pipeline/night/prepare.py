@@ -142,9 +142,27 @@ def run_context(
 
     It has no pictures yet: see `illustrate`.
 
-    index : all objects of the inventory;  chosen : those that the run is of
-    raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record, TableError and
-                UsageError for tables of the museum's own, ReportError for a language without a catalogue
+    Parameters
+    ----------
+    index : ObjectIndex
+        All objects of the inventory.
+    chosen : Listing
+        Those that the run is of.
+
+    Returns
+    -------
+    RunContext
+
+    Raises
+    ------
+    SettingsError
+        For a floor that the site does not have.
+    MotionError
+        For a floor's record.
+    TableError, UsageError
+        For tables of the museum's own.
+    ReportError
+        For a language without a catalogue.
     """
     settings = workspace.settings
     # What is wrong with the museum's own tables, or that a catalogue of phrases is missing, is said before the work.
@@ -208,7 +226,10 @@ def run_context(
 def illustrate(context: RunContext, pictures: Pictures, progress: Progress) -> None:
     """Give a run the pictures of its motions, which its pages show; they are waited for once.
 
-    pictures  : where they are had
+    Parameters
+    ----------
+    pictures : Pictures
+        Where they are had.
     """
     if context.head.charts:
         return
@@ -226,7 +247,10 @@ def admit(
 ) -> tuple[list[ChartTask], frozenset[str]]:
     """Decide which response charts are used (see `popular`); what the same objects asked for last time is kept.
 
-    returns : those to be built before the sheets, and the names of the models that a sample of the objects is run with
+    Returns
+    -------
+    tuple[list[ChartTask], frozenset[str]]
+        Those to be built before the sheets, and the names of the models that a sample of the objects is run with.
     """
     sample, every = _sample(assessed(chosen, context.stores))
     # They are read in any case: damage to what is kept of them is told.

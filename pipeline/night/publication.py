@@ -54,9 +54,14 @@ _SEVERITY = {Verdict.PASS: 0, Verdict.UNDETERMINED: 1, Verdict.FAIL: 2}
 class Now:
     """What a run found, and the inventory of now, for the objects that were decided about.
 
-    digests : of the records, by object number; an object without one is gone
-    changed : object number and digest of its record then -> the fields that changed since, as far as that is known
-    today   : ISO 8601
+    Attributes
+    ----------
+    digests : mapping of str to str
+        Of the records, by object number; an object without one is gone.
+    changed : Callable[[str, str], Collection[str]]
+        Object number and digest of its record then -> the fields that changed since, as far as that is known.
+    today : str
+        ISO 8601.
     """
 
     assessments: Mapping[str, Assessment]
@@ -74,8 +79,16 @@ def now(
 ) -> Now:
     """Return what decisions are held against after a run; today is the day on which it began.
 
-    assessments : of the objects decided about
-    head        : the run, for its motions and its day
+    Parameters
+    ----------
+    assessments : iterable of Assessment
+        Of the objects decided about.
+    head : RunRecord
+        The run, for its motions and its day.
+
+    Returns
+    -------
+    Now
     """
     found = {assessment.scene.item.object_number: assessment for assessment in assessments}
     return Now(found, head.motions, digests, changed, head.started[:10])
@@ -301,7 +314,14 @@ class Publication:
     def strangers(self, *, whole: bool) -> tuple[DecisionStatus, ...]:
         """Return the decisions about objects that the collection does not have any more.
 
-        whole : whether the run is of all objects: else what is not in it is not gone
+        Parameters
+        ----------
+        whole : bool
+            Whether the run is of all objects: else what is not in it is not gone.
+
+        Returns
+        -------
+        tuple of DecisionStatus
         """
         if not whole:
             return ()

@@ -68,10 +68,30 @@ def run(
     """Assess the collection and publish the report; the last report stays until this one is whole.
 
     What has not changed is not found again: results are kept by a digest of everything that they depend on.
-    dry_run : assess and summarise; nothing is written, the museum's source not taken in
-    strict  : objects that cannot be assessed are the exit code 3
-    resume  : go on where a run was cut off: with the inventory as that run had read it, if it got so far
-    raises  : errors with an `exit_code`: settings 2, motions 4, collection 5, lock 6, shrunk 7
+
+    Parameters
+    ----------
+    settings : Settings
+        Of the museum.
+    progress : Progress
+        Is told how far it is.
+    selection : Selection, optional
+        The objects that are assessed; all of them where it is left out.
+    dry_run : bool
+        Assess and summarise; nothing is written, the museum's source not taken in.
+    resume : bool
+        Go on where a run was cut off: with the inventory as that run had read it, if it got so far.
+    strict : bool
+        Objects that cannot be assessed are the exit code 3.
+
+    Returns
+    -------
+    Summary
+
+    Raises
+    ------
+    KourosError
+        With an `exit_code`: settings 2, motions 4, collection 5, lock 6, shrunk 7.
     """
     with rehearsed(settings, dry_run) as lent, damage_told(settings.database):
         return _run(lent, progress, selection or Selection(), dry_run=dry_run, resume=resume, strict=strict)
@@ -306,7 +326,12 @@ _Some = TypeVar("_Some", bound=_Object)
 def named(items: Sequence[_Some], *, galleries: Sequence[str] = (), objects: Sequence[str] = ()) -> list[_Some]:
     """Return the items of these galleries and with these numbers; nothing named means all.
 
-    raises : EmptyCollectionError where there are none; UsageError for an unknown name, with close ones
+    Raises
+    ------
+    EmptyCollectionError
+        Where there are none.
+    UsageError
+        For an unknown name, with close ones.
     """
     if not items:
         raise EmptyCollectionError("the inventory is empty: import the museum's export first (`kouros import FILE`)")
@@ -341,9 +366,18 @@ def _read_site(workspace: Workspace, progress: Progress) -> Site:
 def summarise(head: RunRecord, pages: Sequence[Page], found: Tally) -> Summary:
     """Put what a run found on one screen: every object on display is in exactly one of act, watch, fine and cannot.
 
-    head  : the run without its objects
-    pages : of the run
-    found : of all its pages together
+    Parameters
+    ----------
+    head : RunRecord
+        The run without its objects.
+    pages : sequence of Page
+        Of the run.
+    found : Tally
+        Of all its pages together.
+
+    Returns
+    -------
+    Summary
     """
     states, stored = found.states, found.stored
     shown = sum(states.values())

@@ -215,7 +215,10 @@ class Scheduler:
     def assess(self, progress: Progress, *, store: bool = True) -> None:
         """Find what is not known, and store it as it comes.
 
-        store : False: it is held in memory only
+        Parameters
+        ----------
+        store : bool, optional
+            False: it is held in memory only.
         """
         if not store:
             self._memory = {}

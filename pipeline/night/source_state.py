@@ -14,7 +14,10 @@ from pipeline.settings import Settings
 def mapping_of(settings: Settings, mapping: str) -> Mapping:
     """Return a mapping by the name of its preset, or from its file.
 
-    raises : MappingError for a mapping that cannot be used
+    Raises
+    ------
+    MappingError
+        For a mapping that cannot be used.
     """
     return load_mapping(mapping if mapping in preset_names() else settings.path(mapping))
 
@@ -54,8 +57,19 @@ def source_key(settings: Settings, source: str | Path, mapping: str) -> SourceKe
 def unchanged(workspace: Workspace, source: str, mapping: str) -> bool:
     """Say whether a file is the one that the inventory is the state of, byte for byte, and would be read alike.
 
-    source : as in the settings; a database must be read to know
-    raises : MappingError for a mapping that cannot be used
+    Parameters
+    ----------
+    source : str
+        As in the settings; a database must be read to know.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    MappingError
+        For a mapping that cannot be used.
     """
     if is_address(source):
         return False

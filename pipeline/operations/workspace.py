@@ -219,7 +219,14 @@ def site_folder(home: Path, name: str) -> Path:
 def open_workspace(settings: "Settings", *, keeping: int = 0) -> Workspace:
     """Open the database, bringing its tables to the newest schema; in a dry run it can only be read.
 
-    keeping : how many connections wait to be used again (see `open_database`)
+    Parameters
+    ----------
+    keeping : int, optional
+        How many connections wait to be used again (see `open_database`).
+
+    Returns
+    -------
+    Workspace
     """
     from pipeline.collection.database import open_database
     from pipeline.store import migrate

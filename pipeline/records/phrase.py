@@ -37,8 +37,12 @@ class Ranged(Protocol):
 class Number:
     """A number found in a sentence.
 
-    texts : as it stands there, and the two ends of its range where it has one
-    unit  : as it stands there; "" for a ratio
+    Attributes
+    ----------
+    texts : tuple of str
+        As it stands there, and the two ends of its range where it has one.
+    unit : str
+        As it stands there; "" for a ratio.
     """
 
     texts: tuple[str, ...]
@@ -57,7 +61,10 @@ class Clause:
     ``{name:unit~2}`` writes it with two significant digits, ``{name:unit~0f}`` with no decimals; else it has up to six
     digits.  No clause has "; " in it: that parts clauses.
 
-    text : in English
+    Attributes
+    ----------
+    text : str
+        In English.
     """
 
     text: str
@@ -98,7 +105,14 @@ class Clause:
     def __call__(self, **values: float | Ranged | tuple[float, float, float] | str) -> str:
         """Return the clause with its places filled in.
 
-        values : words, or numbers in SI: one alone, (low, best, high), or what has them as low, value and high
+        Parameters
+        ----------
+        values : float | Ranged | tuple[float, float, float] | str
+            Words, or numbers in SI: one alone, (low, best, high), or what has them as low, value and high.
+
+        Returns
+        -------
+        str
         """
         parts = []
         for before, name, unit, spec in self._pieces:

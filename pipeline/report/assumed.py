@@ -70,7 +70,14 @@ _SIGNS = {"": "", "°": "°", "%": "\u00a0%", "kg/m2": f"{_THIN}kg/m²", "kg/m3"
 def assumed(text: str, units: Units) -> str:
     """Say what was assumed, or where a number comes from.
 
-    text : as the run stored it, clauses parted by "; "; what no phrase of Kouros wrote stays as it is
+    Parameters
+    ----------
+    text : str
+        As the run stored it, clauses parted by "; "; what no phrase of Kouros wrote stays as it is.
+
+    Returns
+    -------
+    str
     """
     return parted(_clause(clause, units) for clause in text.split("; "))
 

@@ -54,8 +54,15 @@ def table_phrases(
 ) -> Iterator[_Found]:
     """Yield the texts of some columns of a table, as babel asks of a method of extraction.
 
-    options : "columns", the names of the columns, separated by commas
-    returns : (line, function, phrase, comments) for each text that is not empty
+    Parameters
+    ----------
+    options : mapping of str to str
+        "columns", the names of the columns, separated by commas.
+
+    Yields
+    ------
+    _Found
+        (line, function, phrase, comments) for each text that is not empty.
     """
     wanted = [name.strip() for name in options.get("columns", "").split(",") if name.strip()]
     rows = csv.DictReader(TextIOWrapper(file, encoding="utf-8", newline=""))

@@ -41,9 +41,14 @@ SIGNED = "X-Reviewed-By"
 class Language:
     """A language of the pages; English, which needs no catalogue, where nothing is said.
 
-    code     : a language tag, such as "it" or "pt-BR"
-    digest   : of its catalogues; "" where there is none
-    reviewed : who signed the catalogue that travels with Kouros; "" where nobody did, None where it is not used
+    Attributes
+    ----------
+    code : str
+        A language tag, such as "it" or "pt-BR".
+    digest : str
+        Of its catalogues; "" where there is none.
+    reviewed : str or None
+        Who signed the catalogue that travels with Kouros; "" where nobody did, None where it is not used.
     """
 
     code: str = "en"
@@ -60,8 +65,19 @@ class Language:
 def language(code: str, catalogues: Path | None) -> Language:
     """Return a language with its phrases: the museum's own, then those that travel with Kouros, and else English.
 
-    catalogues : the folder of the museum's catalogues; None where the settings name none
-    raises     : ReportError for a language without any catalogue, or with a damaged one
+    Parameters
+    ----------
+    catalogues : Path or None
+        The folder of the museum's catalogues; None where the settings name none.
+
+    Returns
+    -------
+    Language
+
+    Raises
+    ------
+    ReportError
+        For a language without any catalogue, or with a damaged one.
     """
     tag = code.replace("_", "-")
     locale = tag.replace("-", "_")

@@ -30,14 +30,30 @@ def render(
 ) -> Path:
     """Write a whole report: pages and exports.  The same record gives the same bytes.
 
-    folder  : a new folder; it appears only when everything in it is written
-    units   : the reader's units; centimetres where None
-    language: of the pages; English where None.  The exports keep the words of the run, for programs read them.
-    paper   : of the sheets to walk with, "A4" or "Letter"
-    changes : since the run before, for the index; None where there was none
-    doubts, terms : see `ReportWriter.finish`
-    returns : the path of index.html
-    raises  : ReportError if the folder exists, or if the record cannot be shown (see `compose`)
+    Parameters
+    ----------
+    folder : Path
+        A new folder; it appears only when everything in it is written.
+    units : Units or None, optional
+        The reader's units; centimetres where None.
+    language : Language or None, optional
+        Of the pages; English where None.  The exports keep the words of the run, for programs read them.
+    paper : str, optional
+        Of the sheets to walk with, "A4" or "Letter".
+    changes : RunChanges or None, optional
+        Since the run before, for the index; None where there was none.
+    doubts, terms
+        See `ReportWriter.finish`.
+
+    Returns
+    -------
+    Path
+        The path of index.html.
+
+    Raises
+    ------
+    ReportError
+        If the folder exists, or if the record cannot be shown (see `compose`).
     """
     head = replace(record, assessments=(), wishes=None, spacings=())
     renderer = PageRenderer(head, units or Units(), language or Language(), paper, terms is not None)
@@ -57,11 +73,21 @@ def draw_all(
 ) -> Path:
     """Draw every page of a run that is over into a report, one at a time, and finish it.
 
-    head    : the run without its objects, with all decisions as they stood
-    beside  : further files of the report, by name
-    doubts, terms : see `ReportWriter.finish`
-    photos  : gives the pictures of some objects, by number
-    returns : the path of index.html
+    Parameters
+    ----------
+    head : RunRecord
+        The run without its objects, with all decisions as they stood.
+    beside : mapping of str to str or None, optional
+        Further files of the report, by name.
+    doubts, terms
+        See `ReportWriter.finish`.
+    photos : Callable[[Sequence[str]], Mapping[str, Photo]] or None, optional
+        Gives the pictures of some objects, by number.
+
+    Returns
+    -------
+    Path
+        The path of index.html.
     """
     decisions = by_object(head.decisions)
     named = set() if changes is None else mentioned(changes)

@@ -44,7 +44,14 @@ def cased(text: str) -> str:
 def short(text: str, limit: int = 90) -> str:
     """Cut a long text at a word where possible, with an ellipsis.
 
-    limit : the largest number of characters that is returned
+    Parameters
+    ----------
+    limit : int, optional
+        The largest number of characters that is returned.
+
+    Returns
+    -------
+    str
     """
     flat = " ".join(clean(text).split())
     if len(flat) <= limit:

@@ -153,10 +153,23 @@ class Units:
     ) -> str:
         """Fill the {placeholders} of a sentence with numbers in the reader's units.
 
-        values : name -> (value in SI or None, SI unit)
-        where  : what the error names, such as "object 12.3, finding rocking"
-        write  : writes a number by its name, value and SI unit; `text` where it is left out
-        raises : ReportError for an unknown placeholder, a format specification or a brace that is not closed
+        Parameters
+        ----------
+        values : Mapping[str, tuple[float | None, str]]
+            Name -> (value in SI or None, SI unit).
+        where : str
+            What the error names, such as "object 12.3, finding rocking".
+        write : Callable[[str, float | None, str], str] or None, optional
+            Writes a number by its name, value and SI unit; `text` where it is left out.
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        ReportError
+            For an unknown placeholder, a format specification or a brace that is not closed.
         """
         parts = []
         for literal, name in _pieces(sentence, where):

@@ -44,7 +44,14 @@ class StoreError(InputError):
 def adapter(hint: Any) -> TypeAdapter[Any]:
     """Return what writes and reads values of one type hint; None is allowed too.
 
-    hint : a dataclass of `pipeline.records`, or a tuple or Mapping of such, or a plain type
+    Parameters
+    ----------
+    hint : Any
+        A dataclass of `pipeline.records`, or a tuple or Mapping of such, or a plain type.
+
+    Returns
+    -------
+    TypeAdapter[Any]
     """
     # The union is what makes room for a configuration: pydantic takes none for a bare dataclass.
     return TypeAdapter(hint | None, config=ConfigDict(ser_json_inf_nan="strings"))
@@ -53,7 +60,10 @@ def adapter(hint: Any) -> TypeAdapter[Any]:
 def to_json(hint: Any, value: Any) -> str:
     """Write a value of that type as JSON text that is the same for equal values.
 
-    raises : StoreError where the value is not of the type, or holds text that is not Unicode (a lone surrogate)
+    Raises
+    ------
+    StoreError
+        Where the value is not of the type, or holds text that is not Unicode (a lone surrogate).
     """
     try:
         # The fallback only lets pydantic go on to the warning, which names the field where the error would not.
@@ -66,7 +76,10 @@ def to_json(hint: Any, value: Any) -> str:
 def of_json(hint: Any, text: str) -> Any:
     """Read what `to_json` wrote; tuples, enumerations and records come back as such.
 
-    raises : StoreError where the text is not JSON of that type
+    Raises
+    ------
+    StoreError
+        Where the text is not JSON of that type.
     """
     try:
         return adapter(hint).validate_json(text)
@@ -77,7 +90,10 @@ def of_json(hint: Any, text: str) -> Any:
 def settings_to_json(settings: Mapping[str, Any]) -> str:
     """Write settings (text, numbers, truth values, None, and tuples, lists and mappings of them) as JSON text.
 
-    raises : StoreError naming the setting that is anything else
+    Raises
+    ------
+    StoreError
+        Naming the setting that is anything else.
     """
     return json.dumps(_tagged(settings, "settings"), allow_nan=False)
 
@@ -114,7 +130,10 @@ def _untagged(read: dict[str, Any]) -> Any:
 def escape(text: str) -> str:
     """Return text that every database can hold.
 
-    raises : StoreError for text that is not Unicode (a lone surrogate)
+    Raises
+    ------
+    StoreError
+        For text that is not Unicode (a lone surrogate).
     """
     if not text.isascii():
         try:
@@ -134,7 +153,10 @@ def unescape(text: str) -> str:
 def plain(hint: Any, value: Any) -> Any:
     """Return a value as plain dictionaries and lists, to see which parts of two records differ.
 
-    raises : StoreError as `to_json`
+    Raises
+    ------
+    StoreError
+        As `to_json`.
     """
     return from_json(to_json(hint, value))
 
@@ -142,7 +164,9 @@ def plain(hint: Any, value: Any) -> Any:
 def check_type(where: str, hint: Any, value: Any) -> None:
     """Refuse a value that is not of a type, saying where it is.
 
-    raises : StoreError
+    Raises
+    ------
+    StoreError
     """
     try:
         to_json(hint, value)

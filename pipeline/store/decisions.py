@@ -19,10 +19,22 @@ _NAMES = tuple(field.name for field in fields(Decision))
 def add_decision(engine: Engine, decision: Decision) -> Decision:
     """Write one decision down.
 
-    engine  : from `collection.database.open_database`, brought to head by `migrate.upgrade`
-    returns : the decision with its id
-    raises  : DamagedRowsError where the log so far is not what was written
-    raises  : StoreError for a withdrawal of what is withdrawn already, and for text that is not Unicode
+    Parameters
+    ----------
+    engine : Engine
+        From `collection.database.open_database`, brought to head by `migrate.upgrade`.
+
+    Returns
+    -------
+    Decision
+        The decision with its id.
+
+    Raises
+    ------
+    DamagedRowsError
+        Where the log so far is not what was written.
+    StoreError
+        For a withdrawal of what is withdrawn already, and for text that is not Unicode.
     """
     values = {name: getattr(decision, name) for name in _NAMES if name != "id"}
     try:
@@ -40,7 +52,10 @@ def add_decision(engine: Engine, decision: Decision) -> Decision:
 def read_decisions(engine: Engine, object_number: str | None = None) -> tuple[Decision, ...]:
     """Return the log, of one object or of all, in the order in which it was written.
 
-    raises : DamagedRowsError where any of it is not what was written: nobody knows then whom it is about
+    Raises
+    ------
+    DamagedRowsError
+        Where any of it is not what was written: nobody knows then whom it is about.
     """
     wanted = select(*(DECISION.c[name] for name in _NAMES)).order_by(DECISION.c.id)
     with engine.connect() as connection:
@@ -65,7 +80,14 @@ def decisions_in_force(engine: Engine) -> InForce:
 def looked_at(engine: Engine, run_id: str, object_number: str, gallery: str = "") -> tuple[Basis, ...]:
     """Return what a run found of an object, as a decision remembers it; nothing where the run has no such object.
 
-    gallery : where it stood, so that those pages are looked at first
+    Parameters
+    ----------
+    gallery : str, optional
+        Where it stood, so that those pages are looked at first.
+
+    Returns
+    -------
+    tuple of Basis
     """
     order = RUN_PAGE.c.gallery != gallery
     with engine.connect() as connection:

@@ -119,8 +119,19 @@ def add_errand_word(engine: Engine, word: ErrandWord) -> None:
 def errand_words(engine: Engine, errands: Sequence[str] | None = None) -> dict[str, tuple[ErrandWord, ...]]:
     """Return what was said of errands, in the order in which it was said.
 
-    errands : only these; None for all
-    raises  : DamagedRowsError where any of it is not what was written
+    Parameters
+    ----------
+    errands : sequence of str or None, optional
+        Only these; None for all.
+
+    Returns
+    -------
+    dict[str, tuple[ErrandWord, ...]]
+
+    Raises
+    ------
+    DamagedRowsError
+        Where any of it is not what was written.
     """
     wanted = [column for column in ERRAND_WORD.c if column.name != "seal"]
     query = select(*wanted).order_by(ERRAND_WORD.c.id)

@@ -18,7 +18,10 @@ def revisions() -> tuple[str, ...]:
 
     A file of ``schemas/migrations/versions`` begins with its revision, four digits that count up.
 
-    raises : FileNotFoundError where the migrations are not installed
+    Raises
+    ------
+    FileNotFoundError
+        Where the migrations are not installed.
     """
     found = (re.match(r"(\d{4})_\w+\.py$", path.name) for path in _folder().joinpath("versions").iterdir())
     return tuple(sorted(match[1] for match in found if match))
@@ -27,7 +30,10 @@ def revisions() -> tuple[str, ...]:
 def current(engine: Engine) -> str | None:
     """Return the revision of the database, None where it has no tables of Kouros yet.
 
-    raises : StoreError where the database cannot be read
+    Raises
+    ------
+    StoreError
+        Where the database cannot be read.
     """
     try:
         with engine.connect() as connection:
@@ -44,8 +50,15 @@ def upgrade(engine: Engine) -> None:
 
     All of it happens in one transaction that other processes wait for: a failure leaves the database as it was.
 
-    engine : from `collection.database.open_database`
-    raises : StoreError where the database was made by a newer Kouros, or a migration fails
+    Parameters
+    ----------
+    engine : Engine
+        From `collection.database.open_database`.
+
+    Raises
+    ------
+    StoreError
+        Where the database was made by a newer Kouros, or a migration fails.
     """
     known = revisions()
     if refuse_newer(engine, current(engine), known) == known[-1]:
@@ -78,7 +91,9 @@ class OtherVersionError(StoreError):
 def require_head(engine: Engine) -> None:
     """Refuse a database whose tables are not those of this version, without changing it.
 
-    raises : OtherVersionError
+    Raises
+    ------
+    OtherVersionError
     """
     known, there = revisions(), current(engine)
     if there != known[-1]:
@@ -91,7 +106,10 @@ def require_head(engine: Engine) -> None:
 def refuse_newer(engine: Engine, revision: str | None, known: tuple[str, ...]) -> str | None:
     """Return the revision of the database, if this version knows it, or there is none.
 
-    raises : StoreError where a newer Kouros made it
+    Raises
+    ------
+    StoreError
+        Where a newer Kouros made it.
     """
     if revision is not None and revision not in known:
         raise StoreError(

@@ -164,7 +164,10 @@ def page_row(page: Page, members: Members) -> dict[str, Any]:
 def add_pages(connection: Connection, rows: Iterable[Mapping[str, Any]], damaged: Collection[str] = ()) -> None:
     """Write pages that are not there yet, as a part of a transaction.
 
-    damaged : keys of pages that are there and are not what was written; these are written anew
+    Parameters
+    ----------
+    damaged : collection of str, optional
+        Keys of pages that are there and are not what was written; these are written anew.
     """
     for row in rows:
         mine = PAGE.c.key == row["key"]
@@ -273,10 +276,13 @@ def _wishes(result: Result, item: Item) -> list[MeasurementRequest]:
 def remove_runs(engine: Engine, run_ids: Iterable[str]) -> None:
     """Remove runs, each in a transaction of its own, and then the pages and the results that no run holds.
 
-    run_ids : one that is not there is passed by
-
     What an interrupted run found belongs to no run, and is lost here: a good run came after it.  The space is used
     again by later runs; an SQLite file does not become smaller by itself.
+
+    Parameters
+    ----------
+    run_ids : iterable of str
+        One that is not there is passed by.
     """
     for run_id in run_ids:
         with engine.begin() as connection:

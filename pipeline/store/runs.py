@@ -46,9 +46,13 @@ _RUN_FIELDS = ("run_id", "started", "finished", "version", "site", "museum", "le
 class RunSummary:
     """A run as a list shows it.
 
-    status : "finished", or "unfinished" for a run without a time of finishing
-    counts : objects, assessed, findings, pass, fail, undetermined, recommendations, pages, charts, motions,
-             and wishes where it asked for them
+    Attributes
+    ----------
+    status : str
+        "finished", or "unfinished" for a run without a time of finishing.
+    counts : mapping of str to int
+        Objects, assessed, findings, pass, fail, undetermined, recommendations, pages, charts, motions, and wishes where
+        it asked for them.
     """
 
     run_id: str
@@ -74,15 +78,27 @@ def commit_run(
 ) -> None:
     """Make a run of its pages, the results on which are kept already: in one transaction, all of it or nothing.
 
-    engine  : from `collection.database.open_database`, brought to head by `migrate.upgrade`
-    head    : the run without its objects; times as text that sorts like time (ISO 8601, UTC); settings of text,
-              numbers, truth values, None, and tuples, lists and mappings of them; every other Mapping is a dict
-    fresh   : rows of those of its pages that are not kept yet (see `pages.page_row`)
-    counts  : how many objects, findings and so on it has
-    damaged : keys of pages that are there, and are to be written anew
-    published : whether it has its report already; where not, nobody takes it for a finished run until `mark_finished`
-    raises  : StoreError for a run_id that is there already, a result that is not kept, a value of the wrong type or
-              text that is not Unicode, or a database that refuses
+    Parameters
+    ----------
+    engine : Engine
+        From `collection.database.open_database`, brought to head by `migrate.upgrade`.
+    head : RunRecord
+        The run without its objects; times as text that sorts like time (ISO 8601, UTC); settings of text, numbers,
+        truth values, None, and tuples, lists and mappings of them; every other Mapping is a dict.
+    fresh : iterable of mapping of str to Any, optional
+        Rows of those of its pages that are not kept yet (see `pages.page_row`).
+    counts : mapping of str to int
+        How many objects, findings and so on it has.
+    damaged : collection of str, optional
+        Keys of pages that are there, and are to be written anew.
+    published : bool, optional
+        Whether it has its report already; where not, nobody takes it for a finished run until `mark_finished`.
+
+    Raises
+    ------
+    StoreError
+        For a run_id that is there already, a result that is not kept, a value of the wrong type or text that is not
+        Unicode, or a database that refuses.
     """
     _check(head)
     status = FINISHED if published else UNFINISHED
@@ -105,7 +121,10 @@ def commit_run(
 def mark_finished(engine: Engine, run_id: str) -> None:
     """Say that a run has its report: from now on it is the newest finished one; where that is known, nothing changes.
 
-    raises : StoreError for a database that refuses
+    Raises
+    ------
+    StoreError
+        For a database that refuses.
     """
     failure = f"run {run_id!a} has its report, but could not be marked as finished"
     with explained(engine, failure), engine.begin() as connection:
@@ -121,8 +140,19 @@ def mark_finished(engine: Engine, run_id: str) -> None:
 def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tuple[Page, ...]]:
     """Return a run without its objects, and its pages, whose objects `pages.load_page` gives.
 
-    run_id : None means the newest finished run
-    raises : StoreError for a run that is not there (listing those that are)
+    Parameters
+    ----------
+    run_id : str or None, optional
+        None means the newest finished run.
+
+    Returns
+    -------
+    tuple[RunRecord, tuple[Page, ...]]
+
+    Raises
+    ------
+    StoreError
+        For a run that is not there (listing those that are).
     """
     with explained(engine, "the run could not be read"), engine.connect() as connection:
         if run_id is None:
@@ -151,7 +181,10 @@ def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tup
 def load_run(engine: Engine, run_id: str | None = None) -> RunRecord:
     """Return a whole run in memory, equal to the one that was saved; of a large collection that is much.
 
-    raises : as `load_head`
+    Raises
+    ------
+    StoreError
+        As `load_head`.
     """
     head, pages = load_head(engine, run_id)
     found = [load_page(engine, page.key) for page in pages]
@@ -191,7 +224,10 @@ def changes_since(engine: Engine, old: str, new: str) -> RunChanges | None:
 def compare_runs(engine: Engine, old: str, new: str) -> RunChanges:
     """Return what changed from one run to another: objects, inputs, verdicts, motions.
 
-    raises : StoreError for a run that is not there, listing those that are
+    Raises
+    ------
+    StoreError
+        For a run that is not there, listing those that are.
     """
     with explained(engine, f"the runs {old!r} and {new!r} could not be compared"), engine.connect() as connection:
         for run_id in (old, new):

@@ -65,7 +65,10 @@ _DECIDED = {
 def decision_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of one decision, as `kouros decide --list --json` prints them.
 
-    raises : KeyError for a field of the record that is not described here
+    Raises
+    ------
+    KeyError
+        For a field of the record that is not described here.
     """
     return _schema(Decision, "Kouros decision", "What a person decided about an object.", _DECIDED)
 
@@ -75,7 +78,15 @@ def finding_schema() -> dict[str, Any]:
 
     A float that is not finite is one of the strings "Infinity", "-Infinity", "NaN".  ``run`` names the run in an export
     (the column ``run_id`` in SQL); the record itself does not carry it.
-    raises : KeyError for a field of the record that is not described here
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    KeyError
+        For a field of the record that is not described here.
     """
     about = f"One demand set against one capacity; verdicts are {', '.join(Verdict)}."
     run = {"run": {"description": "the run that found it", "type": "string"}}

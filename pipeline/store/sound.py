@@ -32,7 +32,9 @@ def runs_but(damaged: list[str]) -> ColumnElement[bool]:
 def require_run(connection: Connection, run_id: str) -> None:
     """Refuse a run of which anything but its pages and results themselves is not what was written; none is no damage.
 
-    raises : DamagedRunError
+    Raises
+    ------
+    DamagedRunError
     """
     for table in (RUN, *_PARTS):
         found = list(damaged_rows(connection, table, table.c.run_id == run_id))

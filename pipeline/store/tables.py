@@ -107,14 +107,20 @@ class ChoiceColumn(_Coded):
     def write(self, value: StrEnum) -> str:
         """Put the member's text.
 
-        raises : ValueError for a text that is no member
+        Raises
+        ------
+        ValueError
+            For a text that is no member.
         """
         return self.kind(value).value
 
     def read(self, text: str) -> StrEnum:
         """Give the member.
 
-        raises : ValueError for a text that is no member
+        Raises
+        ------
+        ValueError
+            For a text that is no member.
         """
         return self.kind(text)
 
@@ -131,14 +137,20 @@ class JsonColumn(_Coded):
     def write(self, value: Any) -> str:
         """Write the value by its type.
 
-        raises : StoreError (see `codec.to_json`)
+        Raises
+        ------
+        StoreError
+            (see `codec.to_json`).
         """
         return codec.to_json(self.hint, value)
 
     def read(self, text: str) -> Any:
         """Read the value by its type.
 
-        raises : StoreError (see `codec.of_json`)
+        Raises
+        ------
+        StoreError
+            (see `codec.of_json`).
         """
         return codec.of_json(self.hint, text)
 
@@ -151,7 +163,10 @@ class SettingsColumn(_Coded):
     def write(self, value: Mapping[str, Any]) -> str:
         """Write the settings.
 
-        raises : StoreError (see `codec.settings_to_json`)
+        Raises
+        ------
+        StoreError
+            (see `codec.settings_to_json`).
         """
         return codec.settings_to_json(value)
 
@@ -187,7 +202,10 @@ class WholeColumn(TypeDecorator[int]):
     def process_bind_param(self, value: SupportsIndex | None, dialect: Dialect) -> int | None:  # noqa: ARG002
         """Put an int.
 
-        raises : TypeError for what is no whole number
+        Raises
+        ------
+        TypeError
+            For what is no whole number.
         """
         return None if value is None else index(value)
 

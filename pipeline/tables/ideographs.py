@@ -34,6 +34,13 @@ def shortened_signs(text: str) -> str:
 
     Signs that are another word in Japanese (機, 葉) are left as they are.
 
-    text : any
+    Parameters
+    ----------
+    text : str
+        Any.
+
+    Returns
+    -------
+    str
     """
     return text if text.isascii() else text.translate(_SHORTER)

@@ -41,7 +41,14 @@ class Diagnosis:
 def diagnose(file: Path, *, migrate: bool = False) -> list[Diagnosis]:
     """Look at everything a night needs; every look is made, whatever the others found, and nothing is written.
 
-    migrate : bring the tables of the database to this version first
+    Parameters
+    ----------
+    migrate : bool, optional
+        Bring the tables of the database to this version first.
+
+    Returns
+    -------
+    list of Diagnosis
     """
     try:
         settings = load_settings(file)

@@ -47,12 +47,20 @@ class ExperimentError(InputError):
 class BodyTable(Table):
     """A body that was shaken: scanned, or a block of known size.
 
-    mesh : in m, z up, resting on its lowest points; a cloud of points without triangles counts as its convex hull
-    hull : the convex hull stands for a mesh that is not closed
-    width_m, depth_m, height_m : of a block, instead of a mesh; its width lies along x
-    surface : what stands on what, such as "marble on wood", by the names of the table of frictions where it has them
-    friction : its static coefficient there, where somebody measured it; else that of the table
-    mass_kg : for the page; no model needs it
+    Attributes
+    ----------
+    mesh : FileName or None
+        In m, z up, resting on its lowest points; a cloud of points without triangles counts as its convex hull.
+    hull : bool
+        The convex hull stands for a mesh that is not closed.
+    width_m, depth_m, height_m : Positive or None
+        Of a block, instead of a mesh; its width lies along x.
+    surface : Text or None
+        What stands on what, such as "marble on wood", by the names of the table of frictions where it has them.
+    friction
+        Its static coefficient there, where somebody measured it; else that of the table.
+    mass_kg : Positive or None
+        For the page; no model needs it.
     """
 
     name: Text
@@ -88,12 +96,20 @@ class PredictionTable(Table):
 class ExperimentTable(Table):
     """What `experiment.toml` says.
 
-    runs : CSV file, one row a run; for each body a column of its name, in which 1 is overturned and 0 is not
-    run_column, fold_column : what tells runs apart, and the motion that several of them scale: folds never part it
-    motions, motion_key : NumPy archive (.npz), and the name in it of a run's array, such as "test{test:03d}"
-    axes : of the table: 1 (arrays of n samples), 2 (x and y, shape (2, n)) or 3 (x, y and z)
-    direction : degrees from the table's x axis to that of the bodies, or "unknown"
-    high_pass_hz : corner below which a table's accelerometer drifts; 0 leaves the motions as they are
+    Attributes
+    ----------
+    runs : FileName
+        CSV file, one row a run; for each body a column of its name, in which 1 is overturned and 0 is not.
+    run_column, fold_column : Text
+        What tells runs apart, and the motion that several of them scale: folds never part it.
+    motions, motion_key
+        NumPy archive (.npz), and the name in it of a run's array, such as "test{test:03d}".
+    axes
+        Of the table: 1 (arrays of n samples), 2 (x and y, shape (2, n)) or 3 (x, y and z).
+    direction
+        Degrees from the table's x axis to that of the bodies, or "unknown".
+    high_pass_hz : float
+        Corner below which a table's accelerometer drifts; 0 leaves the motions as they are.
     """
 
     title: Text

@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 from pipeline.records import RunRecord
 from pipeline.report.pages.compose import compose, museum_view
-from pipeline.report.pages.museum_views import GalleryView, MuseumView
+from pipeline.report.pages.museum_views import GalleryView, MotionView, MuseumView
 from pipeline.report.pages.tallies import tally, total
-from pipeline.report.pages.views import DecisionsView, MotionView, Pointer, StateCounts
+from pipeline.report.pages.views import DecisionsView, Pointer, StateCounts
 from pipeline.report.render import pages_of
 from pipeline.report.units import Units
 

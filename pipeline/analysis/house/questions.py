@@ -90,7 +90,14 @@ class RuleQuestion:
     def plain(self, when: object) -> dict[str, Any]:
         """Return the rule as the keys and values of [[house]]: what is taken now, for somebody to mend and to sign.
 
-        when : the day on which it is asked
+        Parameters
+        ----------
+        when : object
+            The day on which it is asked.
+
+        Returns
+        -------
+        mapping of str to Any
         """
         value: Any = " | ".join(VOCABULARIES.get(self.field, ()))
         if self.best is not None:

@@ -103,7 +103,14 @@ def kinds_of(stood: Iterable[Stood]) -> dict[int, tuple[Kind, ...]]:
 def grouped(stood: Sequence[Stood], x_azimuth: float) -> Groups:
     """Return the analyses of scenes by what their shaking passes through.
 
-    x_azimuth : degrees clockwise from north of the x axis of the motions
+    Parameters
+    ----------
+    x_azimuth : float
+        Degrees clockwise from north of the x axis of the motions.
+
+    Returns
+    -------
+    Groups
     """
     groups: dict[tuple[FurnitureFilter | None, Transfer | None], list[Analyses]] = {}
     for model, furniture, members in requirements([one.scene for one in stood])[0]:

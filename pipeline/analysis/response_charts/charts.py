@@ -32,9 +32,13 @@ KEPT = 64
 class ChartCache:
     """Charts by identity; threads that want the same one at once wait for one of them to build it.
 
-    folder   : of the cache that keeps charts and histories from one process to the next; None: in memory only
-    admitted : names of the groups of parameters that charts are built for where there is a choice, so that what is
-               looked up does not hang on who asked before; None: whatever is there, or pays for those who ask
+    Parameters
+    ----------
+    folder : Path or None
+        Of the cache that keeps charts and histories from one process to the next; None: in memory only.
+    admitted : set of str or None
+        Names of the groups of parameters that charts are built for where there is a choice, so that what is looked up
+        does not hang on who asked before; None: whatever is there, or pays for those who ask.
     """
 
     def __init__(self, folder: Path | None = None, kept: int = KEPT, *, admitted: Set[str] | None = None) -> None:

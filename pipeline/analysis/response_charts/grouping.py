@@ -26,12 +26,23 @@ one direction and more than 40,000 for 0.1 %, because kinks run slantwise throug
 class ChartSettings:
     """What a chart depends on besides its model, its motion and the parameters.
 
-    angle    : degrees, None for the worst direction or for a model that is shaken in two
-    both     : whether the model is shaken in both directions
-    tail     : s after the record; None: until rest
-    numerics : how finely the nodes are integrated, the step between directions, and the tolerance
-    low      : where the axis begins; None: as the model says
-    raises   : InputError for a tolerance that makes no sense
+    Attributes
+    ----------
+    angle : float or None
+        Degrees, None for the worst direction or for a model that is shaken in two.
+    both : bool
+        Whether the model is shaken in both directions.
+    tail : float or None
+        s after the record; None: until rest.
+    numerics : Numerics
+        How finely the nodes are integrated, the step between directions, and the tolerance.
+    low : float or None
+        Where the axis begins; None: as the model says.
+
+    Raises
+    ------
+    InputError
+        For a tolerance that makes no sense.
     """
 
     angle: float | None
@@ -50,10 +61,15 @@ class ChartSettings:
 class Tabulated:
     """Rows looked up in charts, (n,) each.
 
-    columns : the outputs, "error" (of the first output) and "note"; outputs that a chart does not follow are NaN
-    bounds  : by how much each output may be wrong; of the first it is the error
-    found   : which rows were looked up.  The others are NaN and are to be integrated: they lie outside of the chart,
-              have a parameter that no chart has, or lie where the chart did not reach the tolerance
+    Attributes
+    ----------
+    columns : Columns
+        The outputs, "error" (of the first output) and "note"; outputs that a chart does not follow are NaN.
+    bounds : Columns
+        By how much each output may be wrong; of the first it is the error.
+    found : NDArray[np.bool_]
+        Which rows were looked up.  The others are NaN and are to be integrated: they lie outside of the chart, have a
+        parameter that no chart has, or lie where the chart did not reach the tolerance.
     """
 
     columns: Columns

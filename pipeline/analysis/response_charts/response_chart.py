@@ -52,13 +52,22 @@ MOST_NODES = 6_000
 class ChartCells:
     """The cells of a chart, along its axis.
 
-    edges    : (cells + 1,), from 0 to UNITS
-    values   : (cells, 7, outputs)
-    bounds   : (cells, outputs), the error that the lookups in a cell may have by interpolation
-    own      : (cells,), the largest error of the model itself at the nodes, of its first output
-    note     : (cells,) int64, the bits of the notes at the nodes
-    resolved : (cells,) bool, whether the bounds are within the tolerance
-    nodes    : how many analyses it took
+    Attributes
+    ----------
+    edges : Array
+        (cells + 1,), from 0 to UNITS.
+    values : Array
+        (cells, 7, outputs).
+    bounds : Array
+        (cells, outputs), the error that the lookups in a cell may have by interpolation.
+    own : Array
+        (cells,), the largest error of the model itself at the nodes, of its first output.
+    note : Integers
+        (cells,) int64, the bits of the notes at the nodes.
+    resolved : NDArray[np.bool_]
+        (cells,) bool, whether the bounds are within the tolerance.
+    nodes : int
+        How many analyses it took.
     """
 
     edges: Array
@@ -108,11 +117,21 @@ def _predict(values: Array) -> Array:
 def refine(analyse: Analyses, tolerance: float, most_nodes: int = MOST_NODES, counted: int | None = None) -> ChartCells:
     """Halve cells until their error is below ``tolerance`` times the value there, or no more analyses may be run.
 
-    analyse    : runs the model; its outputs are magnitudes
-    tolerance  : of max(value, SMALL x the largest value), of every output that counts
-    most_nodes : of the first cells and of halving them; the worst are halved first where not all can be
-    counted    : how many of the outputs count, the first ones; None: all
-    returns    : the cells; those that could not be resolved have the bounds that they have
+    Parameters
+    ----------
+    analyse : Analyses
+        Runs the model; its outputs are magnitudes.
+    tolerance : float
+        Of max(value, SMALL x the largest value), of every output that counts.
+    most_nodes : int, optional
+        Of the first cells and of halving them; the worst are halved first where not all can be.
+    counted : int or None, optional
+        How many of the outputs count, the first ones; None: all.
+
+    Returns
+    -------
+    ChartCells
+        The cells; those that could not be resolved have the bounds that they have.
     """
     nodes = _Nodes(analyse)
     size = UNITS // 2**BEGIN
@@ -161,11 +180,18 @@ Run = Callable[[Mapping[str, Array]], Columns]
 class Looked:
     """What a chart says, row for row of what it was asked.
 
-    columns  : the outputs, (n,) each
-    bounds   : by how much interpolation may be wrong in each of them
-    own      : (n,), the error of the analyses that the chart is made of, of the first output
-    note     : (n,) bits; what was said of any analysis nearby is said
-    resolved : (n,), whether the bounds are within the chart's tolerance
+    Attributes
+    ----------
+    columns : Columns
+        The outputs, (n,) each.
+    bounds : Columns
+        By how much interpolation may be wrong in each of them.
+    own : Array
+        (n,), the error of the analyses that the chart is made of, of the first output.
+    note : Integers
+        (n,) bits; what was said of any analysis nearby is said.
+    resolved : NDArray[np.bool_]
+        (n,), whether the bounds are within the chart's tolerance.
     """
 
     columns: Columns
@@ -179,10 +205,16 @@ class Looked:
 class ResponseChart:
     """The response of one model under one motion, along one parameter, all others fixed.
 
-    outputs   : names of what is tabulated
-    low, high : the stretch of the axis that the cells cover
-    settled   : value from which on the response is that at the end of the chart; inf: nowhere
-    tolerance : wanted of every output, relative to max(value, 1 % of its largest)
+    Attributes
+    ----------
+    outputs : tuple of str
+        Names of what is tabulated.
+    low, high : float
+        The stretch of the axis that the cells cover.
+    settled : float
+        Value from which on the response is that at the end of the chart; inf: nowhere.
+    tolerance : float
+        Wanted of every output, relative to max(value, 1 % of its largest).
     """
 
     axis: ChartAxis
@@ -208,10 +240,20 @@ class ResponseChart:
     ) -> "ResponseChart":
         """Run the model where it is needed.
 
-        axis       : the model's, or a stretch of it
-        excitation : the strongest that the run may shake with: in both directions for a worst direction
-        fixed      : the model's parameters besides that of the axis (NaN: left out)
-        first      : whether the tolerance is that of the first output alone, whatever becomes of the others
+        Parameters
+        ----------
+        axis : ChartAxis
+            The model's, or a stretch of it.
+        excitation : Excitation
+            The strongest that the run may shake with: in both directions for a worst direction.
+        fixed : mapping of str to float
+            The model's parameters besides that of the axis (NaN: left out).
+        first : bool, optional
+            Whether the tolerance is that of the first output alone, whatever becomes of the others.
+
+        Returns
+        -------
+        'ResponseChart'
         """
         settled = np.inf if axis.settled is None else axis.settled(excitation)
         high = axis.high if settled > axis.high else max(settled, 2.0 * axis.low)
@@ -340,7 +382,10 @@ def _all(value: float, like: Array) -> Array:
 def axis_of(model: Model) -> ChartAxis:
     """Return the axis along which a model is tabulated.
 
-    raises : ValueError with the reason for a model that is not
+    Raises
+    ------
+    ValueError
+        With the reason for a model that is not.
     """
     if model.chart is None:
         raise InputError(f"{model.name} has no chart: {model.uncharted}; ask for history")

@@ -165,7 +165,14 @@ _SHORTENED = 3
 def shortened(word: str) -> tuple[str, str] | None:
     """Return what a word cut short says, of which all words of dimensions that begin so say one thing: "lev", leveys.
 
-    word : in small letters
+    Parameters
+    ----------
+    word : str
+        In small letters.
+
+    Returns
+    -------
+    (str, str) or None
     """
     if len(word) < _SHORTENED or not word.isalpha():
         return None

@@ -185,7 +185,14 @@ def parse(
 def labels(text: str, decimal: str = ".") -> tuple[frozenset[str], tuple[str, ...]]:
     """Return the short labels of a text, such as H and L, and the languages that explain them best.
 
-    text, decimal : as of `parse`
+    Parameters
+    ----------
+    text, decimal : str
+        As of `parse`.
+
+    Returns
+    -------
+    tuple[frozenset[str], tuple[str, ...]]
     """
     head = text[:LONGEST]
     return labels_in(tokens_of(head, decimal), head)

@@ -131,7 +131,14 @@ def _dated(column: Column) -> float:
 def repeated_in(column: Column) -> float:
     """Share of a column's cells that repeat another, or are empty.
 
-    column : any
+    Parameters
+    ----------
+    column : Column
+        Any.
+
+    Returns
+    -------
+    float
     """
     return 1.0 - len(column.distinct) / len(column.values) if column.values else 1.0
 
@@ -182,7 +189,14 @@ _CODE = re.compile(r"[^\W\d_]{1,4}[ .-]?\d{1,6}[a-z]?")
 def is_coded(column: Column) -> bool:
     """Say whether all that a column of names of objects holds is letters and a number: A1, A2, A3 under "Object".
 
-    column : of the source
+    Parameters
+    ----------
+    column : Column
+        Of the source.
+
+    Returns
+    -------
+    bool
     """
     return called(column.name, "object_name") and all(_CODE.fullmatch(text.strip()) for text in column.filled)
 
@@ -190,7 +204,14 @@ def is_coded(column: Column) -> bool:
 def perhaps_sizes(columns: Sequence[Column]) -> str:
     """Return in words which columns hold numbers as sizes are, where no name of theirs says so; "" for none.
 
-    columns : those that no field takes
+    Parameters
+    ----------
+    columns : sequence of Column
+        Those that no field takes.
+
+    Returns
+    -------
+    str
     """
     able = [one.name for one in columns if one.numeric and _varied(one) and not internal(one)]
     return f"; {', '.join(map(repr, able[:10]))} may hold sizes, for they are of different numbers" if able else ""
@@ -218,9 +239,14 @@ def settle_number(
 
     That is the next one by its name, or else one that has another number in each row.
 
-    able : columns that may be of numbers by their names
-    columns : of the source
-    found, told : as of `guess`; they grow
+    Parameters
+    ----------
+    able : sequence of Column
+        Columns that may be of numbers by their names.
+    columns : sequence of Column
+        Of the source.
+    found, told
+        As of `guess`; they grow.
     """
     if "object_number" in told.choices or not able or repeated_in(able[0]) <= MOST_REPEATED or able[0].blanks:
         return

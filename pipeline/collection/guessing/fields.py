@@ -43,7 +43,14 @@ _POINT = re.compile(r"(?<![\d,.])\d+\.\d{1,2}(?![\d,.])", re.ASCII)
 def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:
     """Return the decimal mark that most numbers have, of cells and of dimension texts.
 
-    parted : cells are parted by commas; there a number of thousands may have been put into quotes as well ("1,250")
+    Parameters
+    ----------
+    parted : bool, optional
+        Cells are parted by commas; there a number of thousands may have been put into quotes as well ("1,250").
+
+    Returns
+    -------
+    str
     """
     commas = points = 0
     grouped = False
@@ -71,8 +78,16 @@ def decimal_of(columns: Sequence[Column], *, parted: bool = False) -> str:
 def thousands_in(column: Column, mark: str) -> bool:
     """Say whether a mark parts thousands in a column: three digits stand behind each, beside hundreds without it.
 
-    column : of numbers
-    mark : of "," and "."
+    Parameters
+    ----------
+    column : Column
+        Of numbers.
+    mark : str
+        Of "," and ".".
+
+    Returns
+    -------
+    bool
     """
     if called(column.name, "object_number"):
         return False
@@ -147,7 +162,14 @@ def flag_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | No
 def tells_display(column: Column) -> bool:
     """Say whether a column tells in words how objects are displayed or held, and is no flag and no vocabulary.
 
-    column : of texts
+    Parameters
+    ----------
+    column : Column
+        Of texts.
+
+    Returns
+    -------
+    bool
     """
     vocabulary = {one.value for one in CHOICES["support"]}
     some = [text for text in column.distinct if flag_of(text, display=True) is None]

@@ -45,6 +45,13 @@ def without_frame(name: str) -> tuple[str, bool] | None:
 def frame_counts(name: str) -> bool | None:
     """Return whether sizes of a column are with the frame; None where its name says nothing of that.
 
-    name : of a column: "Framed (cm)"
+    Parameters
+    ----------
+    name : str
+        Of a column: "Framed (cm)".
+
+    Returns
+    -------
+    bool or None
     """
     return False if _UNFRAMED.search(name) else True if _FRAMED.search(name) else None

@@ -25,7 +25,14 @@ SNIFFED = 1 << 18
 def opened_file(file: Path) -> Iterator[BinaryIO]:
     """Open a file, unpacked where it was packed by gzip.
 
-    file : its path
+    Parameters
+    ----------
+    file : Path
+        Its path.
+
+    Yields
+    ------
+    BinaryIO
     """
     try:
         with file.open("rb") as packed, closing(unpacked(packed, file.name, STANDARD.bytes)) as binary:

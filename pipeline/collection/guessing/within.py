@@ -49,7 +49,14 @@ def place_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | N
 def placed(column: Column) -> float:
     """Share of a column's texts that begin as the names of rooms, cases and stores do.
 
-    column : any
+    Parameters
+    ----------
+    column : Column
+        Any.
+
+    Returns
+    -------
+    float
     """
     return sum(map(_is_place, column.filled)) / len(column.filled) if column.filled else 0.0
 
@@ -106,7 +113,14 @@ def parting(columns: Sequence[Column], used: Iterable[Column], place: Column | N
 def labels_within(column: Column) -> list[str]:
     """Return the labels in a column's texts behind which the thing is named: titles before descriptions.
 
-    column : of texts such as "Titel: Vase Beschreibung: Vase aus Porzellan Wann: 1790"
+    Parameters
+    ----------
+    column : Column
+        Of texts such as "Titel: Vase Beschreibung: Vase aus Porzellan Wann: 1790".
+
+    Returns
+    -------
+    list of str
     """
     often = Counter(label for text in column.filled for label in set(_LABEL.findall(text)))
     known = [

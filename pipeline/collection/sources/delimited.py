@@ -342,7 +342,16 @@ class HeadedSettings(SourceSettings):
     def straight(self, rows: Iterator[Row], file: str) -> Iterator[Row]:
         """Return the rows of objects, turned where they stand side by side, gathered where each fact has a row.
 
-        rows : the header first;  file : the source's name in messages
+        Parameters
+        ----------
+        rows : iterator of Row
+            The header first.
+        file : str
+            The source's name in messages.
+
+        Yields
+        ------
+        Row
         """
         rows = turned(rows, file) if self.sideways else rows
         return rows if self.facts is None else spread(rows, self.facts, file)

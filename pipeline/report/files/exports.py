@@ -97,7 +97,14 @@ class FindingRows:
     def of(self, run: str, findings: Iterable[Finding]) -> tuple[list[dict[str, Any]], str, str]:
         """Return findings as rows, as lines of CSV and as lines of JSON.
 
-        run : identity of the run that found them
+        Parameters
+        ----------
+        run : str
+            Identity of the run that found them.
+
+        Returns
+        -------
+        tuple[list[dict[str, Any]], str, str]
         """
         rows, lines, objects = [], [], []
         begun: dict[tuple[str, str], tuple[dict[str, Any], str, str]] = {}

@@ -45,8 +45,12 @@ class FileSum(NamedTuple):
 class KeptPage:
     """A page of a report: the key of all that it depends on, what the index says of it, what it adds to the totals.
 
-    images : files with pictures of its objects
-    turn   : what it has in its room for the pages before and behind it, see `turning`
+    Attributes
+    ----------
+    images : tuple of str
+        Files with pictures of its objects.
+    turn : str
+        What it has in its room for the pages before and behind it, see `turning`.
     """
 
     key: str
@@ -66,10 +70,16 @@ class KeptPage:
 class ReportManifest:
     """What a report consists of.
 
-    pages   : in their order
-    reading : key of all that the page and the list of what reading refused depend on, "" where there are none
-    files   : every file of the report but the manifest, by name
-    plan    : key of all that the plan depends on, "" where there is none
+    Attributes
+    ----------
+    pages : tuple of KeptPage
+        In their order.
+    reading : str
+        Key of all that the page and the list of what reading refused depend on, "" where there are none.
+    files : mapping of str to FileSum
+        Every file of the report but the manifest, by name.
+    plan : str
+        Key of all that the plan depends on, "" where there is none.
     """
 
     pages: tuple[KeptPage, ...] = ()
@@ -93,7 +103,9 @@ def part_files(page: str) -> tuple[str, ...]:
 def sum_of(file: Path) -> FileSum:
     """Return size and checksum of a file.
 
-    raises : OSError
+    Raises
+    ------
+    OSError
     """
     with file.open("rb") as stream:
         digest = hashlib.file_digest(stream, "sha256")
@@ -124,7 +136,12 @@ def _sealed(content: bytes) -> bytes:
 def read_manifest(folder: Path) -> ReportManifest:
     """Return the manifest of a report.
 
-    raises : OSError where it cannot be read; ValueError where it is damaged, or is not understood
+    Raises
+    ------
+    OSError
+        Where it cannot be read.
+    ValueError
+        Where it is damaged, or is not understood.
     """
     whole = (folder / MANIFEST).read_bytes()
     content = whole[_AT:-2]
@@ -270,11 +287,24 @@ _POLICY = "default-src 'none'; base-uri 'none'; form-action 'none'"
 def publish(folder: Path, root: Path) -> Path:
     """Point ``root/latest`` at a whole report, atomically; earlier reports stay where they are.
 
-    folder  : a rendered report inside root
-    root    : the folder that holds all reports
-    returns : root/latest, or root/latest.html on a file system without symbolic links
-    raises  : FileNotFoundError if the folder holds no report; ReportError if it lies outside root or the name
-              "latest" is taken by something that Kouros did not make
+    Parameters
+    ----------
+    folder : Path
+        A rendered report inside root.
+    root : Path
+        The folder that holds all reports.
+
+    Returns
+    -------
+    Path
+        Root/latest, or root/latest.html on a file system without symbolic links.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the folder holds no report.
+    ReportError
+        If it lies outside root or the name "latest" is taken by something that Kouros did not make.
     """
     folder, root = folder.resolve(), root.resolve()
     if not (folder / "index.html").is_file():
@@ -298,7 +328,14 @@ def publish(folder: Path, root: Path) -> Path:
 def lasting_name(root: Path) -> Path:
     """Return what `publish` gives, before it is done: a report tells it, and is whole before it is shown.
 
-    root : the folder that holds all reports, which exists
+    Parameters
+    ----------
+    root : Path
+        The folder that holds all reports, which exists.
+
+    Returns
+    -------
+    Path
     """
     link = root / LINK
     if link.is_symlink():

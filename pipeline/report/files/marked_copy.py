@@ -46,8 +46,12 @@ def write_listed(faults: Sequence[CellFault], target: Path) -> None:
 def write_marked(path: Path, faults: Sequence[CellFault], target: Path) -> None:
     """Write the copy; marks of an earlier one are taken away first.
 
-    path   : the workbook, which was read without being refused as a whole
-    target : the copy
+    Parameters
+    ----------
+    path : Path
+        The workbook, which was read without being refused as a whole.
+    target : Path
+        The copy.
     """
     from openpyxl import load_workbook
     from openpyxl.comments import Comment

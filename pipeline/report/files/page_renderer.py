@@ -30,12 +30,20 @@ from pipeline.report.units import Units
 class RenderedPage:
     """A page as a report holds it; it can be pickled.
 
-    page  : its HTML
-    entry : what the index says of it
-    tally : what it adds to the totals of the run
-    parts : what it adds to each export, by the names of `PARTS_OF_PAGE`
-    sheet : to walk the gallery with, as PDF; none for what is not on display
-    images : pictures of its objects, by the names of their files
+    Attributes
+    ----------
+    page : bytes
+        Its HTML.
+    entry : Entry
+        What the index says of it.
+    tally : Tally
+        What it adds to the totals of the run.
+    parts : mapping of str to bytes
+        What it adds to each export, by the names of `PARTS_OF_PAGE`.
+    sheet : bytes or None
+        To walk the gallery with, as PDF; none for what is not on display.
+    images : mapping of str to bytes
+        Pictures of its objects, by the names of their files.
     """
 
     page: bytes
@@ -50,9 +58,14 @@ class RenderedPage:
 class PageRenderer:
     """What draws the pages of one run: what they share is made once.
 
-    head  : the run without its objects, with all its charts and motions
-    paper : of the sheets to walk with, "A4" or "Letter"
-    planned : whether the report has a plan, to which its pages lead
+    Attributes
+    ----------
+    head : RunRecord
+        The run without its objects, with all its charts and motions.
+    paper : str
+        Of the sheets to walk with, "A4" or "Letter".
+    planned : bool
+        Whether the report has a plan, to which its pages lead.
     """
 
     head: RunRecord

@@ -47,8 +47,12 @@ _LABELS = {
 def write_rules(sheet: Worksheet, questions: Sequence[RuleQuestion], length: str) -> None:
     """Write the questions, one a row; what is filled in becomes house rules.
 
-    questions : what settles most first
-    length    : unit of lengths
+    Parameters
+    ----------
+    questions : sequence of RuleQuestion
+        What settles most first.
+    length : str
+        Unit of lengths.
     """
     from openpyxl.styles import Alignment
     from openpyxl.worksheet.datavalidation import DataValidation

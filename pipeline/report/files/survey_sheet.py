@@ -53,7 +53,10 @@ _LABELS = {
 def write_decisions(sheet: Worksheet, models: Sequence[str]) -> None:
     """Write the empty sheet.
 
-    models : names of the models, as the column "model" may name them
+    Parameters
+    ----------
+    models : sequence of str
+        Names of the models, as the column "model" may name them.
     """
     sheet.append([_LABELS[name] for name in COLUMNS])
     sheet.append(COLUMNS)
@@ -102,11 +105,21 @@ def write_survey(
 ) -> dict[str, int]:
     """Write the workbook of what is worth measuring; what would settle nothing is counted and left out.
 
-    found  : measurements, in the order in which they should be done
-    fields : all that a survey may ask for, with words and how to measure it
-    length : unit of lengths
-    rules  : questions that one house rule answers for many objects
-    returns: how many objects and quantities it asks for, and how many would settle nothing
+    Parameters
+    ----------
+    found : sequence of MeasurementRequest
+        Measurements, in the order in which they should be done.
+    fields : sequence of Measurable
+        All that a survey may ask for, with words and how to measure it.
+    length : str, optional
+        Unit of lengths.
+    rules : sequence of RuleQuestion, optional
+        Questions that one house rule answers for many objects.
+
+    Returns
+    -------
+    mapping of str to int
+        How many objects and quantities it asks for, and how many would settle nothing.
     """
     from openpyxl import Workbook
 

@@ -28,9 +28,13 @@ def write_workbook(
 ) -> None:
     """Write tables to a workbook, row by row; equal tables give equal bytes.
 
-    sheets : name -> (columns, rows); a text is written as text whatever it begins with, a number that no cell can hold
-             as the text "inf" or "-inf", what is unknown as an empty cell, a list joined by "; "
-    made   : when the run began, as the workbook's own date
+    Parameters
+    ----------
+    sheets : Mapping[str, tuple[Sequence[str], Iterable[Mapping[str, Any]]]]
+        Name -> (columns, rows); a text is written as text whatever it begins with, a number that no cell can hold as
+        the text "inf" or "-inf", what is unknown as an empty cell, a list joined by "; ".
+    made : datetime
+        When the run began, as the workbook's own date.
     """
     from openpyxl import Workbook
     from openpyxl.styles import Font

@@ -17,7 +17,7 @@ from pipeline.report.pages.describe import Describer, Sayings
 from pipeline.report.pages.floor_plan import plan_view
 from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
-from pipeline.report.pages.museum_views import GalleryView, MuseumView
+from pipeline.report.pages.museum_views import EffortView, GalleryRow, GalleryView, LevelRow, MuseumView
 from pipeline.report.pages.numerics import decided_views, fidelities, self_test_view
 from pipeline.report.pages.photo_views import credits_of, photo_view
 from pipeline.report.pages.reading import reading_view
@@ -25,11 +25,8 @@ from pipeline.report.pages.scene_words import furniture_known
 from pipeline.report.pages.survey_words import SURVEY_SECONDS, errands, survey_sentence
 from pipeline.report.pages.tallies import urgency
 from pipeline.report.pages.views import (
-    EffortView,
     Entry,
-    GalleryRow,
     Lead,
-    LevelRow,
     ObjectView,
     PageView,
     Pointer,
@@ -65,7 +62,10 @@ _HELPLESS, _UNNAMED = "\0", "\0\0"
 class PageHead:
     """What a gallery's page says of where it comes from; it stays as it is as long as its results do.
 
-    finished : when its results were found
+    Attributes
+    ----------
+    finished : str
+        When its results were found.
     """
 
     museum: str
@@ -93,7 +93,10 @@ def page_head(head: RunRecord, page: Page) -> PageHead:
 class Composed:
     """A gallery's page ready to be filled in, what the index says of it, and the ids and ranks of its objects.
 
-    walk : the sheet to walk the gallery with; None for what is not on display
+    Attributes
+    ----------
+    walk : WalkView or None
+        The sheet to walk the gallery with; None for what is not on display.
     """
 
     gallery: GalleryView
@@ -114,11 +117,25 @@ def compose(
 ) -> Composed:
     """Return everything that a page shows, in the order in which it shows it.
 
-    record  : the run with the objects, wishes, spacings and decisions of this page only
-    sayings : what was put into words on other pages of the run, in this language and these units
-    several : whether the run has several levels of shaking
-    photos  : pictures of its objects, by number
-    raises  : ReportError for a sentence with an unknown placeholder or a mark on a chart that the run does not hold
+    Parameters
+    ----------
+    record : RunRecord
+        The run with the objects, wishes, spacings and decisions of this page only.
+    sayings : Sayings or None, optional
+        What was put into words on other pages of the run, in this language and these units.
+    several : bool
+        Whether the run has several levels of shaking.
+    photos : mapping of str to Photo or None, optional
+        Pictures of its objects, by number.
+
+    Returns
+    -------
+    Composed
+
+    Raises
+    ------
+    ReportError
+        For a sentence with an unknown placeholder or a mark on a chart that the run does not hold.
     """
     describer = Describer(record, units, sayings or Sayings(record.motions, units))
     members = sorted(record.assessments, key=urgency)
@@ -210,10 +227,23 @@ def museum_view(
 ) -> MuseumView:
     """Return everything that the index, the method page and the motion page show.
 
-    head    : the run without its objects; the decisions about objects that the run does not have are told besides
-    entries : of all pages
-    tally   : of all pages together
-    raises  : ReportError where two galleries' files would have one name
+    Parameters
+    ----------
+    head : RunRecord
+        The run without its objects; the decisions about objects that the run does not have are told besides.
+    entries : sequence of Entry
+        Of all pages.
+    tally : Tally
+        Of all pages together.
+
+    Returns
+    -------
+    MuseumView
+
+    Raises
+    ------
+    ReportError
+        Where two galleries' files would have one name.
     """
     pages = Counter(entry.page.file for entry in entries)
     twins = [entry.name for entry in entries if pages[entry.page.file] > 1]

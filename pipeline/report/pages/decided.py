@@ -44,7 +44,14 @@ class Decided:
     def covered(self, assessment: Assessment, level: str | None = None) -> bool:
         """Say whether all that does not pass (at a level) is accepted or overruled, and beyond doubt.
 
-        level : None for all levels; without anything that does not pass there is nothing to cover
+        Parameters
+        ----------
+        level : str or None, optional
+            None for all levels; without anything that does not pass there is nothing to cover.
+
+        Returns
+        -------
+        bool
         """
         mine = self._of.get(assessment.scene.item.object_number, ())
         bad = [f for f in assessment.findings if f.verdict is not Verdict.PASS and level in (None, f.level)]
@@ -94,7 +101,14 @@ def decisions_view(
 ) -> DecisionsView:
     """Gather the decisions about objects, in their order, under the headings of a page; those in doubt come first.
 
-    objects : the decisions, whether they settle the object, and the object; None where the run does not have it
+    Parameters
+    ----------
+    objects : Iterable[tuple[Sequence[DecisionView], bool, Pointer | None]]
+        The decisions, whether they settle the object, and the object; None where the run does not have it.
+
+    Returns
+    -------
+    DecisionsView
     """
     listed = list(objects)
     pairs = [(d, o) for decisions, _settled, o in listed for d in decisions]

@@ -133,7 +133,10 @@ def _together(views: Sequence[MeasureView]) -> MeasureView:
 class Sayings:
     """Findings and numbers in words, each once for all objects of a run that share it.
 
-    motions : of the run
+    Parameters
+    ----------
+    motions : iterable of MotionSummary
+        Of the run.
     """
 
     def __init__(self, motions: Iterable[MotionSummary], units: Units) -> None:
@@ -149,7 +152,10 @@ class Sayings:
     def finding(self, f: Finding) -> FindingView:
         """Return a finding in words.
 
-        raises : ReportError naming the object, for a bad sentence
+        Raises
+        ------
+        ReportError
+            Naming the object, for a bad sentence.
         """
         return self._findings.had(finding_key(f), lambda: self._finding(f))
 
@@ -160,7 +166,14 @@ class Sayings:
     def told(self, say: Callable[[Any], str], about: Any, *alike: Hashable) -> str:
         """Return what a function says about something, once for all objects that have it alike.
 
-        alike : what it looks at, where that is not the whole
+        Parameters
+        ----------
+        alike : Hashable
+            What it looks at, where that is not the whole.
+
+        Returns
+        -------
+        str
         """
         return self._told.had((say, *(alike or (about,))), lambda: say(about))
 
@@ -287,7 +300,10 @@ class Describer:
     def object(self, assessment: Assessment, page: str) -> ObjectView:
         """Return everything that the report says about one object.
 
-        raises : ReportError naming the object, for a bad sentence or a mark on a chart that the run does not hold
+        Raises
+        ------
+        ReportError
+            Naming the object, for a bad sentence or a mark on a chart that the run does not hold.
         """
         scene, item = assessment.scene, assessment.scene.item
         ordered = sorted(assessment.findings, key=finding_order)

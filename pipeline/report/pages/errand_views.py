@@ -45,9 +45,14 @@ NAMED = 8
 class ErrandView:
     """An errand: where, what for, what to do; hours and cost with their ranges, and the share of the loss it avoids.
 
-    objects : number, short title and place in the report of the first of them
-    more    : objects that are not named
-    first   : title of the errand that has to be done first, "" for none
+    Attributes
+    ----------
+    objects : tuple[tuple[str, str, str], ...]
+        Number, short title and place in the report of the first of them.
+    more : int
+        Objects that are not named.
+    first : str
+        Title of the errand that has to be done first, "" for none.
     """
 
     number: int
@@ -84,16 +89,28 @@ class BeginView:
 class PlanView:
     """The plan's page; all texts are ready to be shown.
 
-    lede    : what is avoided with what there is
-    takes   : what the plan takes, with the ranges
-    half    : how soon half of it is avoided, "" where nothing is
-    gap     : how far from the best choice it may be; "" where it is proven that there is none better
-    left    : what no errand avoids
-    trades  : trade, errands, hours
-    walking : whether the errands are in walking order, else what avoids most for an hour comes first
-    hidden  : errands of the plan that are only in the list beside the page
-    away    : errands that take objects from view, and how much more they would avoid
-    priced  : whether costs have a currency
+    Attributes
+    ----------
+    lede : str
+        What is avoided with what there is.
+    takes : str
+        What the plan takes, with the ranges.
+    half : str
+        How soon half of it is avoided, "" where nothing is.
+    gap : str
+        How far from the best choice it may be; "" where it is proven that there is none better.
+    left : str
+        What no errand avoids.
+    trades : tuple[tuple[str, str, str], ...]
+        Trade, errands, hours.
+    walking : bool
+        Whether the errands are in walking order, else what avoids most for an hour comes first.
+    hidden : int
+        Errands of the plan that are only in the list beside the page.
+    away : tuple of ErrandView
+        Errands that take objects from view, and how much more they would avoid.
+    priced : bool
+        Whether costs have a currency.
     """
 
     lede: str

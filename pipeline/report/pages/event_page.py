@@ -53,11 +53,18 @@ class EventGallery:
 class EventView:
     """The page; all texts are ready to be shown.
 
-    lede   : how many objects are down, with the range
-    facts  : names and values of the earthquake and of the shaking
-    notes  : what a reader has to know of these numbers
-    safe, first, aftershock : lists of objects
-    rests  : what the probabilities are from
+    Attributes
+    ----------
+    lede : str
+        How many objects are down, with the range.
+    facts : tuple[tuple[str, str], ...]
+        Names and values of the earthquake and of the shaking.
+    notes : tuple of str
+        What a reader has to know of these numbers.
+    safe, first, aftershock : tuple of EventObject
+        Lists of objects.
+    rests : str
+        What the probabilities are from.
     """
 
     name: str

@@ -34,7 +34,10 @@ class PlaceView:
 class GalleryPlanView:
     """A gallery to scale: the drawing, its legend in rows, and how many objects have no recorded position.
 
-    tight : the neighbours between which a line is drawn, for they may meet: each pair once, as it is at its worst level
+    Attributes
+    ----------
+    tight : tuple of SpacingView
+        The neighbours between which a line is drawn, for they may meet: each pair once, as it is at its worst level.
     """
 
     svg: Markup

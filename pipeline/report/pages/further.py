@@ -43,9 +43,14 @@ GROUP = "kouros.pages"
 class PageContent:
     """What a further page says.
 
-    title    : its heading, and its link in the navigation
-    template : in Jinja; what stands below the heading
-    context  : what the template names
+    Attributes
+    ----------
+    title : str
+        Its heading, and its link in the navigation.
+    template : str
+        In Jinja; what stands below the heading.
+    context : mapping of str to Any
+        What the template names.
     """
 
     title: str

@@ -9,7 +9,7 @@ from pipeline.motions.record import ESTIMATED, NO_VERTICAL
 from pipeline.records import Chart, MotionSummary
 from pipeline.report.language import _, local
 from pipeline.report.pages.describe import approval, motion_anchor
-from pipeline.report.pages.views import MotionView
+from pipeline.report.pages.museum_views import MotionView
 from pipeline.report.text import clean, count, plain, words
 from pipeline.report.units import Units
 
@@ -22,7 +22,14 @@ _FIGURE = re.compile(r"Figure (\d+)")
 def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units) -> MotionView:
     """Return one motion's section.
 
-    charts : all charts of the run; those whose key holds the first 16 digits of the motion's hash belong to it
+    Parameters
+    ----------
+    charts : mapping of str to Chart
+        All charts of the run; those whose key holds the first 16 digits of the motion's hash belong to it.
+
+    Returns
+    -------
+    MotionView
     """
     table: list[tuple[str, tuple[str, ...]]] = []
     used: set[str] = set()

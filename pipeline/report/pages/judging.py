@@ -38,7 +38,12 @@ MOVES = ("displacement",)
 class FragilityView:
     """One fragility curve: what fails and from when on, why it is not sharper, how often, beside what; its picture.
 
-    chance : of harm within 50 years, where joint samples tell it;  numbers : how well the curve fits these
+    Attributes
+    ----------
+    chance : str
+        Of harm within 50 years, where joint samples tell it.
+    numbers : str
+        How well the curve fits these.
     """
 
     title: str
@@ -81,7 +86,10 @@ class RoomView:
 class ShakingView:
     """From what shaking on the free objects of a gallery fail, beside what others published.
 
-    note : why nothing is said of how often that comes; "" where it is said of some
+    Attributes
+    ----------
+    note : str
+        Why nothing is said of how often that comes; "" where it is said of some.
     """
 
     sentence: str

@@ -10,11 +10,7 @@ from pipeline.report.pages.reading import ReadingView
 from pipeline.report.pages.views import (
     NO_DECISIONS,
     DecisionsView,
-    EffortView,
-    GalleryRow,
-    LevelRow,
     MotionLink,
-    MotionView,
     ObjectView,
     PageView,
     Pointer,
@@ -24,6 +20,77 @@ from pipeline.report.pages.views import (
     SurveyView,
     TaskView,
 )
+
+
+@dataclass(frozen=True, slots=True)
+class GalleryRow:
+    """One gallery's row of the index, with all its pages.
+
+    Attributes
+    ----------
+    unchanged : str
+        The day on which what is newest of it was found; "" where that is of this run.
+    """
+
+    name: str
+    on_display: bool
+    pages: tuple[PageView, ...]
+    counts: StateCounts
+    task: str
+    unchanged: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class LevelRow:
+    """How many objects are in which state at one level of shaking; period: how often it comes, "" where nobody says."""
+
+    name: str
+    period: str
+    counts: StateCounts
+
+
+@dataclass(frozen=True, slots=True)
+class MotionView:
+    """One motion's section: measures with units, charts, processing steps, who answers for it.
+
+    Attributes
+    ----------
+    table : tuple[tuple[str, tuple[str, ...]], ...]
+        Rows of PGA, PGV, PGD, Arias intensity; one text a column (see ``columns``), "–" where not computed.
+    others : tuple[tuple[str, str], ...]
+        Measures that fit in no column.
+    corner : str
+        What of it hangs on the corner of its filter, "" where it was not filtered here.
+    charts : tuple of str
+        Keys of the charts that were drawn for this motion, in the order of the paper's figures.
+    """
+
+    name: str
+    hash: str
+    anchor: str
+    level: str
+    source: str
+    licence: str
+    approved: str
+    sampling: str
+    columns: tuple[str, ...]
+    table: tuple[tuple[str, tuple[str, ...]], ...]
+    others: tuple[tuple[str, str], ...]
+    corner: str
+    charts: tuple[str, ...]
+    steps: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EffortView:
+    """By what the verdicts of one model were decided; ``any`` is the share of analyses for which a history was run."""
+
+    title: str
+    analyses: int
+    certificate: int
+    chart: int
+    history: int
+    any: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,21 +124,38 @@ class GalleryView:
 class MuseumView:
     """The index: all galleries, ranked, with totals over all on display; ``credit`` is the source's own line.
 
-    counts     : of what is on display
-    rows       : the galleries, the one with the most to do first
-    check      : the first of those whose record is to be checked before anything is done; checks: how many there are
-    levels     : what there is to do at each level of shaking, where there are several
-    stores     : what is not on display, with totals of its own; None where everything is on display
-    reading    : what was refused and is doubted of the museum's records
-    whole      : whether the run is of the whole collection
-    workbook   : whether the exports include a workbook: it is left out where it would be too long
-    decided    : what settled the verdicts, by kind
-    fidelities : how many verdicts were asked at which fidelity, in one line
-    self_test  : None where none was run before this run
-    furniture  : of how many objects it is known from where what they stand on, in one line, "" of none
-    survey     : what is worth measuring in the whole museum and what asking cost, "" where it was not asked
-    classes   : from what shaking on the classes of objects come to harm; none where that was not asked
-    since     : None where there was no run before
+    Attributes
+    ----------
+    counts : StateCounts
+        Of what is on display.
+    rows : tuple of GalleryRow
+        The galleries, the one with the most to do first.
+    check : tuple of Pointer
+        The first of those whose record is to be checked before anything is done; checks: how many there are.
+    levels : tuple of LevelRow
+        What there is to do at each level of shaking, where there are several.
+    stores : GalleryRow or None
+        What is not on display, with totals of its own; None where everything is on display.
+    reading : ReadingView or None
+        What was refused and is doubted of the museum's records.
+    whole : bool
+        Whether the run is of the whole collection.
+    workbook : bool
+        Whether the exports include a workbook: it is left out where it would be too long.
+    decided : tuple of DecidedView
+        What settled the verdicts, by kind.
+    fidelities : str
+        How many verdicts were asked at which fidelity, in one line.
+    self_test : SelfTestView or None
+        None where none was run before this run.
+    furniture : str
+        Of how many objects it is known from where what they stand on, in one line, "" of none.
+    survey : str
+        What is worth measuring in the whole museum and what asking cost, "" where it was not asked.
+    classes : tuple of ClassCurveView
+        From what shaking on the classes of objects come to harm; none where that was not asked.
+    since : SinceView or None
+        None where there was no run before.
     """
 
     museum: str

@@ -33,10 +33,16 @@ class PageNote:
 class Notes:
     """The texts of one kind on one page.
 
-    letter : what the numbers of this list begin with, so that two lists are told apart on paper
-    headed : whether a citation repeats the beginning of the text, up to its colon
-    most   : the longest beginning that is repeated
-    texts  : (text, source) as often as each is used; what is used once is not listed but written where it is used
+    Parameters
+    ----------
+    letter : str
+        What the numbers of this list begin with, so that two lists are told apart on paper.
+    headed : bool
+        Whether a citation repeats the beginning of the text, up to its colon.
+    most : int
+        The longest beginning that is repeated.
+    texts : iterable of (str, str)
+        (text, source) as often as each is used; what is used once is not listed but written where it is used.
     """
 
     def __init__(
@@ -112,7 +118,10 @@ class Notes:
 class PageNotes:
     """The three lists of a gallery's page, and the sources of the measures on it by their titles.
 
-    alone : why a model was left out, where that is said of one object of the page only
+    Attributes
+    ----------
+    alone : frozenset of str
+        Why a model was left out, where that is said of one object of the page only.
     """
 
     assumed: Notes
@@ -124,7 +133,14 @@ class PageNotes:
     def numbers(self, numbers: Sequence[NumberView], cited: Collection[str] = ()) -> Markup:
         """Return the numbers that an object was run with in one line, grouped by where they come from.
 
-        cited : the notes to which links stand beside
+        Parameters
+        ----------
+        cited : collection of str, optional
+            The notes to which links stand beside.
+
+        Returns
+        -------
+        Markup
         """
         between, tag = escaped(_("; ")), self.assumed.tag
         groups = [
@@ -202,7 +218,14 @@ class Memory(Generic[Made]):
     def had(self, key: Hashable, make: Callable[[], Made]) -> Made:
         """Return what was made of a key, or make it now.
 
-        key : everything that it depends on
+        Parameters
+        ----------
+        key : Hashable
+            Everything that it depends on.
+
+        Returns
+        -------
+        Made
         """
         found = self._made.get(key)
         if found is None:

@@ -18,8 +18,12 @@ _CREDIT = 300
 class PhotoView:
     """A picture as a page shows it.
 
-    file   : its address from the page
-    credit : who is to be credited for it, "" where nobody is named
+    Attributes
+    ----------
+    file : str
+        Its address from the page.
+    credit : str
+        Who is to be credited for it, "" where nobody is named.
     """
 
     file: str

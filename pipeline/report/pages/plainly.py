@@ -223,7 +223,14 @@ _PHRASES: Mapping[str, Callable[[], str]] = {
 def dangers(findings: Iterable[Finding]) -> str:
     """Say what an object may do by what it does not pass: "It may tip over, slide or break."; "" for nothing.
 
-    findings : of the object, the most urgent first; one of a model of another package is told by its title
+    Parameters
+    ----------
+    findings : iterable of Finding
+        Of the object, the most urgent first; one of a model of another package is told by its title.
+
+    Returns
+    -------
+    str
     """
     failing = [f for f in findings if finding_state(f) is not Judged.PASSES]
     if any(f.model not in _DANGERS for f in failing):

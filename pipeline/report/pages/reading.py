@@ -49,11 +49,18 @@ Doubts = Callable[[], Iterable[Doubt]]
 class ReadingView:
     """What the index says of the reading.
 
-    known   : whether it was noted what reading refused and doubts
-    unsaid  : objects taken to be on display because no column says what is; 0 where one does
-    suspicions : what the whole source seems to have wrong, and what mends it
-    choices : what was settled for the whole source by choice
-    images  : photographs that cannot be shown
+    Attributes
+    ----------
+    known : bool
+        Whether it was noted what reading refused and doubts.
+    unsaid : int
+        Objects taken to be on display because no column says what is; 0 where one does.
+    suspicions : tuple[tuple[str, str], ...]
+        What the whole source seems to have wrong, and what mends it.
+    choices : tuple of str
+        What was settled for the whole source by choice.
+    images : int
+        Photographs that cannot be shown.
     """
 
     known: bool

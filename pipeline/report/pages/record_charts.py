@@ -54,7 +54,14 @@ _Curve = tuple[str, str, Array, Array]
 class Drift:
     """What a panel of the histories could not hold of the record as it was.
 
-    quantity, unit : "velocity" in "m/s" or "displacement" in "m"; axes : the components; peak : the largest, SI
+    Attributes
+    ----------
+    quantity, unit : str
+        "velocity" in "m/s" or "displacement" in "m".
+    axes : tuple of str
+        The components.
+    peak : float
+        The largest, SI.
     """
 
     quantity: str

@@ -94,10 +94,22 @@ class RecordView:
 def render_record(inspections: Sequence[Inspection], file: Path, units: Units) -> Path:
     """Write the page of some records of one site: one HTML file that needs nothing but a browser.
 
-    inspections : of `pipeline.motions.inspection.inspect`, in the order of their sections
-    file        : written anew; what is there is replaced
-    returns     : the file
-    raises      : OSError where it cannot be written
+    Parameters
+    ----------
+    inspections : sequence of Inspection
+        Of `pipeline.motions.inspection.inspect`, in the order of their sections.
+    file : Path
+        Written anew; what is there is replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OSError
+        Where it cannot be written.
     """
     file = Path(file)
     views = [record_view(one, units, f"r{i}") for i, one in enumerate(inspections)]

@@ -67,7 +67,14 @@ def furniture(scene: Scene) -> str:
 def furniture_known(counts: Mapping[str, int]) -> str:
     """Say in one line of how many objects it is known from where what they stand on; "" of none.
 
-    counts : by origin
+    Parameters
+    ----------
+    counts : mapping of str to int
+        By origin.
+
+    Returns
+    -------
+    str
     """
     told = {
         Origin.MEASURED: _("%(count)s by their record"),
@@ -100,7 +107,14 @@ def left_out(skipped: tuple[str, str]) -> str:
 def what_it_is(kind: tuple[str, str]) -> str:
     """Return what an object is computed as.
 
-    kind : its class, and in words the body that is more particular; "" where there is none
+    Parameters
+    ----------
+    kind : (str, str)
+        Its class, and in words the body that is more particular; "" where there is none.
+
+    Returns
+    -------
+    str
     """
     object_class, body = kind
     return said(body) if body else class_words(object_class)

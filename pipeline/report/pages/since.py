@@ -31,7 +31,14 @@ def _why(kind: CauseKind) -> str:
 def since_view(changes: RunChanges, objects: Mapping[str, Pointer], units: Units) -> SinceView:
     """Return the section "since the last run".
 
-    objects : by object number, those that `mentioned` names; what is gone has none
+    Parameters
+    ----------
+    objects : mapping of str to Pointer
+        By object number, those that `mentioned` names; what is gone has none.
+
+    Returns
+    -------
+    SinceView
     """
     worse = [_turn(change, objects) for change in changes.worsened]
     fixed = [_turn(change, objects) for change in changes.fixed]

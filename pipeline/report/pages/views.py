@@ -66,7 +66,10 @@ class MotionLink:
 class FindingView:
     """One finding in words; ``numbers`` the sums behind the sentence in one line.
 
-    size : the utilisation for sorting, "" where it is not known
+    Attributes
+    ----------
+    size : str
+        The utilisation for sorting, "" where it is not known.
     """
 
     title: str
@@ -103,11 +106,18 @@ class CheckView:
 class MeasureView:
     """One recommendation in words; ``ended`` are the failures that can no longer happen with it.
 
-    plain    : what to do, for who does it
-    brief    : the same in a list of many objects
-    cautions : what of it has to be minded, a sentence each
-    sentence : the same with all its numbers
-    named    : whether somebody is to say first what the object is
+    Attributes
+    ----------
+    plain : str
+        What to do, for who does it.
+    brief : str
+        The same in a list of many objects.
+    cautions : tuple of str
+        What of it has to be minded, a sentence each.
+    sentence : str
+        The same with all its numbers.
+    named : bool
+        Whether somebody is to say first what the object is.
     """
 
     measure: str
@@ -181,11 +191,18 @@ class DecisionView:
 class ObjectView:
     """One object with everything that the report says about it; ``lead`` is its most urgent finding.
 
-    settled : whether people accepted or overruled all that does not pass, and nothing of that is in doubt
-    taken   : how sure its class is, and which other is possible; "" where a person decided
-    worth   : what it counts where losses are compared, and why; "" where nothing is recorded of that
-    dangers : what it may do by what it does not pass, in a sentence; "" for nothing
-    rests_on : what its result rests on that nobody has looked at: wax or ties of its record, a wall that stands free
+    Attributes
+    ----------
+    settled : bool
+        Whether people accepted or overruled all that does not pass, and nothing of that is in doubt.
+    taken : str
+        How sure its class is, and which other is possible; "" where a person decided.
+    worth : str
+        What it counts where losses are compared, and why; "" where nothing is recorded of that.
+    dangers : str
+        What it may do by what it does not pass, in a sentence; "" for nothing.
+    rests_on : tuple of str
+        What its result rests on that nobody has looked at: wax or ties of its record, a wall that stands free.
     """
 
     number: str
@@ -273,8 +290,12 @@ class Lead:
 class Pointer:
     """An object as a page other than its own names it: what it is, where its entry is, what happens, what to do.
 
-    measure : the first recommendation in a sentence, "" where there is none
-    chance  : how likely it comes to harm, None where nobody knows
+    Attributes
+    ----------
+    measure : str
+        The first recommendation in a sentence, "" where there is none.
+    chance : ChanceView or None
+        How likely it comes to harm, None where nobody knows.
     """
 
     number: str
@@ -292,8 +313,12 @@ class Pointer:
 class TaskView:
     """One line of "What to do first": a measure and the objects it is for, the most urgent ones first.
 
-    measure : its name, "" where none helps
-    sets    : what to set on each of the objects, such as "clearance 14 cm"; "" for nothing
+    Attributes
+    ----------
+    measure : str
+        Its name, "" where none helps.
+    sets : tuple of str
+        What to set on each of the objects, such as "clearance 14 cm"; "" for nothing.
     """
 
     title: str
@@ -318,8 +343,14 @@ class TaskView:
 class DecisionsView:
     """The decisions of a page: how many of each kind, and each with its object (None where that is gone).
 
-    settled : how many objects are settled by them
-    doubted : those that must be looked at again;  groups : the others by kind
+    Attributes
+    ----------
+    settled : int
+        How many objects are settled by them.
+    doubted : tuple[tuple[DecisionView, Pointer | None], ...]
+        Those that must be looked at again.
+    groups
+        The others by kind.
     """
 
     accepted: int = 0
@@ -365,7 +396,12 @@ class ChangeView:
 class SinceView:
     """What changed since the run before; lists are cut, each with how many more there are.
 
-    before : when that run began;  counts, causes : how many of what, those above zero only
+    Attributes
+    ----------
+    before : str
+        When that run began.
+    counts, causes : tuple[tuple[str, str], ...]
+        How many of what, those above zero only.
     """
 
     before: str
@@ -381,7 +417,12 @@ class SinceView:
 class PageView:
     """Which of its gallery's pages a page is: large galleries are cut into several.
 
-    number, of : from 1;  first, last : numbers of the objects between which it lies in the catalogue's order
+    Attributes
+    ----------
+    number, of : int
+        From 1.
+    first, last : str
+        Numbers of the objects between which it lies in the catalogue's order.
     """
 
     file: str
@@ -395,10 +436,18 @@ class PageView:
 class Entry:
     """What the index says of a gallery's page, and of those on it that it names; kept beside the report as JSON.
 
-    task     : what is to do first there, in words, "" where nothing is advised
-    leaders  : its most urgent objects that nobody has settled, each with the key that sorts it among all
-    check    : the same of those whose record is to be checked first, which are not among the leaders
-    run      : that found what is newest on it;  made : when, ISO 8601
+    Attributes
+    ----------
+    task : str
+        What is to do first there, in words, "" where nothing is advised.
+    leaders : tuple[tuple[Urgency, Pointer], ...]
+        Its most urgent objects that nobody has settled, each with the key that sorts it among all.
+    check : tuple[tuple[Urgency, Pointer], ...]
+        The same of those whose record is to be checked first, which are not among the leaders.
+    run : str
+        That found what is newest on it.
+    made : str
+        When, ISO 8601.
     """
 
     name: str
@@ -411,65 +460,3 @@ class Entry:
     decisions: DecisionsView = DecisionsView()
     run: str = ""
     made: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class GalleryRow:
-    """One gallery's row of the index, with all its pages.
-
-    unchanged : the day on which what is newest of it was found; "" where that is of this run
-    """
-
-    name: str
-    on_display: bool
-    pages: tuple[PageView, ...]
-    counts: StateCounts
-    task: str
-    unchanged: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class LevelRow:
-    """How many objects are in which state at one level of shaking; period: how often it comes, "" where nobody says."""
-
-    name: str
-    period: str
-    counts: StateCounts
-
-
-@dataclass(frozen=True, slots=True)
-class MotionView:
-    """One motion's section: measures with units, charts, processing steps, who answers for it.
-
-    table  : rows of PGA, PGV, PGD, Arias intensity; one text a column (see ``columns``), "–" where not computed
-    others : measures that fit in no column
-    corner : what of it hangs on the corner of its filter, "" where it was not filtered here
-    charts : keys of the charts that were drawn for this motion, in the order of the paper's figures
-    """
-
-    name: str
-    hash: str
-    anchor: str
-    level: str
-    source: str
-    licence: str
-    approved: str
-    sampling: str
-    columns: tuple[str, ...]
-    table: tuple[tuple[str, tuple[str, ...]], ...]
-    others: tuple[tuple[str, str], ...]
-    corner: str
-    charts: tuple[str, ...]
-    steps: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class EffortView:
-    """By what the verdicts of one model were decided; ``any`` is the share of analyses for which a history was run."""
-
-    title: str
-    analyses: int
-    certificate: int
-    chart: int
-    history: int
-    any: str
