@@ -11,7 +11,9 @@ from pipeline.collection.guessing.notes import GuessNotes
 
 _NUMBERED = re.compile(r"(.*\D)0?(\d)\D?", re.DOTALL)
 """The name of a column of one level: what all are called, and its number."""
-_HOUSE = frozenset({"building", "gebaude", "haus", "batiment", "edificio", "edificiu", "gebouw", "bina", "κτιριο"})
+_HOUSE = frozenset(
+    {"building", "bldg", "gebaude", "haus", "batiment", "edificio", "edificiu", "gebouw", "bina", "κτιριο"}
+)
 """Words, folded, of a column of houses, in which a name of a room may be that of several."""
 
 
@@ -36,7 +38,7 @@ def levels_of_place(
     where = found.get("gallery")
     if where is None or {"gallery", "case"} & told.choices.keys():
         return ()
-    levels = _numbered(where, columns) or _by_house(where, able)
+    levels = _numbered(where, columns) or _by_house(where, [*able, *columns])
     others = {id(one) for field, one in found.items() if field not in ("gallery", "displayed")}
     levels = tuple(one for one in levels if id(one) not in others)
     if len(levels) < 2 or where not in levels:
@@ -65,6 +67,6 @@ def _by_house(where: Column, able: Sequence[Column]) -> tuple[Column, ...]:
         if house is where or internal(house) or not _HOUSE.intersection(plain(house.name).split()):
             continue
         pairs = {pair for pair in zip(house.values, where.values, strict=False) if all(pair)}
-        if len(pairs) > len({room for _, room in pairs}):
+        if len(pairs) > len({room for _, room in pairs}) and len(house.distinct) <= len(where.distinct):
             return house, where
     return ()
