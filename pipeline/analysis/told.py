@@ -57,6 +57,11 @@ DEEP = 0.25
 """Smaller plan dimension [m] from which what stands by its class hardly hangs flat on a wall: judgement."""
 THICK, STANDS_FROM = 0.15, 1.0
 """Smaller plan dimension and height [m] from which it stands before the wall that it is fixed to: judgement."""
+TALL, HEAVY = 1.5, 100.0
+"""Height [m] and mass [kg] from which it does so where its plan is not recorded, or is too low for that: judgement."""
+BULKY = 0.4
+"""Smaller plan dimension [m] from which what is held by a mount stands as well, where it is as tall: judgement."""
+_UPRIGHT = (*_FURNITURE, "statue", "standing_figure")
 HANGS_FROM = 0.5
 """Largest size [m] from which a title is believed that says that a thing hangs from above: judgement."""
 
@@ -85,13 +90,19 @@ def as_displayed(item: Item) -> Item:
     told = told_by(item.displayed)
     # A stand within a case is no pedestal of its own, nor is its floor the room's: "case 3", fixed to its base.
     within = told.furniture in (Furniture.PEDESTAL, Furniture.FLOOR) and _names_case(item)
+    # What hangs from a line or a hook of a case is shaken as that is.
+    cased = (
+        Furniture.SHOWCASE
+        if told.support in _ABOVE and _names_case(item) and not _WALL.search(item.displayed)
+        else None
+    )
     # Of what is recorded to hang or to stand the words for the other are about something else.
     stands = item.support is not None and item.support not in _ABOVE
     return replace(
         item,
         support=item.support or (None if item.hanging is not None else told.support),
         hanging=item.hanging or (None if stands else told.hanging),
-        furniture=item.furniture or (None if within else told.furniture),
+        furniture=item.furniture or (cased if within else told.furniture or cased),
         furniture_anchorage=item.furniture_anchorage or told.anchorage,
         surface_material=item.surface_material or " and ".join(surfaces_in(item.displayed)),
     )
@@ -234,7 +245,7 @@ def as_told(item: Item, row: ObjectClass) -> Item:
         on_wall = Furniture.WALL if item.furniture is None and not item.case and _named_wall(item) else item.furniture
         return replace(item, support=None, hanging=None, furniture=on_wall)
     if row.support is Support.FREESTANDING and WHEN_HELD not in row.models and item.support is Support.HUNG:
-        if item.hanging is Hanging.FIXED and (_large(item, THICK, STANDS_FROM) or longcase(item, row.name)):
+        if item.hanging is Hanging.FIXED and _stands_at_wall(item, row.name):
             # A wardrobe or a longcase clock that is screwed to the wall stands there, and is held by it.
             return replace(item, support=Support.FASTENED, hanging=None)
         if row.name in _FURNITURE and item.hanging is None and _large(item, DEEP, STANDS_FROM) and _named_wall(item):
@@ -245,6 +256,12 @@ def as_told(item: Item, row: ObjectClass) -> Item:
             return replace(item, support=Support.SUSPENDED, hanging=None)
     if row.support is Support.HUNG and item.hanging is None and _held_by_wall(item):
         return replace(item, support=Support.HUNG, hanging=Hanging.FIXED)
+    if WHEN_HELD in row.models and item.hanging is Hanging.FIXED and item.support is Support.HUNG:
+        plan = [side for side in (item.width_m, item.depth_m) if side]
+        bulky = _large(item, BULKY, TALL) and (item.height_m or 0.0) > max(plan)
+        if bulky or stands_too(item.displayed):
+            # A double bass or a suit of armour that is fixed to the wall stands on the floor.
+            return replace(item, support=Support.FASTENED, hanging=None)
     if item.support is not None or item.hanging is not None:
         return item
     if item.isolator.strip():
@@ -283,6 +300,20 @@ def _large(item: Item, depth: float, height: float = 0.0) -> bool:
     """Whether a thing that is told to hang is so deep, and so high, that it hardly hangs flat on a wall."""
     plan = [side for side in (item.width_m, item.depth_m) if side]
     return len(plan) > 1 and min(plan) >= depth and (item.height_m or 0.0) >= height and bool(item.displayed.strip())
+
+
+def _stands_at_wall(item: Item, object_class: str) -> bool:
+    """Whether what stands by its class, and is fixed to a wall, stands before it: it is thick, heavy, or tall."""
+    if _large(item, THICK, STANDS_FROM) or longcase(item, object_class):
+        return True
+    height, plan = item.height_m or 0.0, [side for side in (item.width_m, item.depth_m) if side]
+    if len(plan) > 1:
+        upright = height >= max(HANGS_FROM, 0.5 * max(plan)) and min(plan) >= THICK
+        return upright and (item.mass_kg or 0.0) >= HEAVY
+    # Of its sides one is not recorded: a cupboard, or what is as wide as that, and not an oar.
+    return height >= TALL and (
+        object_class in _UPRIGHT or (not plan and (item.mass_kg or 0.0) >= HEAVY) or sum(plan) >= DEEP
+    )
 
 
 def in_case(item: Item, row: ObjectClass) -> bool:

@@ -41,10 +41,11 @@ from pipeline.collection.guessing.fields import (
     thousands_in,
 )
 from pipeline.collection.guessing.headings import place_by_heading
+from pipeline.collection.guessing.levels import levels_of_place
 from pipeline.collection.guessing.likeness import misspelt
 from pipeline.collection.guessing.names import bare, is_length, is_side, named
 from pipeline.collection.guessing.notes import GuessNotes
-from pipeline.collection.guessing.orders import section_of
+from pipeline.collection.guessing.orders import section_of, tells_orders, with_orders
 from pipeline.collection.guessing.questions import Question
 from pipeline.collection.guessing.shown import (
     place_of_shown,
@@ -218,7 +219,7 @@ def _places_of_cases(found: dict[str, Column], columns: Sequence[Column], told: 
 
 
 def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told: GuessNotes) -> Guess:
-    able = candidates(columns)
+    able = candidates([column for column in columns if not tells_orders(column)])
     _add_misspelt(columns, able, told)
     found = _chosen(name, columns, able, told)
     _places_of_cases(found, columns, told)
@@ -281,8 +282,11 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if "long" in source:
         document["source"]["long"] = source["long"]
     document["museum"] = {"name": "Our museum"}
-    room_and_position(able.get("gallery", ()), found, told)
-    words_of_display(columns, found, told)
+    levels = levels_of_place(able.get("gallery", ()), found, columns, told)
+    rest = [column for column in columns if column not in levels]
+    if not levels:
+        room_and_position(able.get("gallery", ()), found, told)
+    words_of_display(rest, found, told)
     if "on_display" not in found and "on_display" not in told.choices:
         flag = flag_among(columns, found.values())
         if flag is not None:
@@ -307,7 +311,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if both:
         told.questions[:] = [question for question in told.questions if question.key != "medium"]
         told.sure.append(f"the medium is {' and '.join(repr(column.name) for column in both)} together")
-    joined = {"medium": both, "displayed": ways_beside(columns, found, told)}
+    joined = {"medium": both, "displayed": ways_beside(rest, found, told), "gallery": levels}
     second = None if "object_number" in told.choices else second_number(columns, found)
     length = None if "depth_m" in told.choices else length_beside(columns, found.get("depth_m"))
     place = found.get("gallery")
@@ -331,8 +335,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if gone is not None:
         fields["on_display"] = gone
     document["columns"] = fields
-    _cases_in_places(fields, [column for column in (found.get("gallery"), usual) if column is not None], told)
-    texts = texts_among(columns, used)
+    _cases_in_places(fields, levels or [column for column in (found.get("gallery"), usual) if column is not None], told)
+    texts = with_orders(texts_among(columns, used), columns)
     prose: list[Column] = []
     wanted = told.choices.get("dimensions")
     if wanted is not None:

@@ -11,6 +11,7 @@ from pipeline.collection.cells import Cells
 from pipeline.collection.dimensions import Choice, Chosen, DimensionNote, Dimensions, agree, choose, doubts, parse
 from pipeline.collection.dimensions.choice import HANGS
 from pipeline.collection.dimensions.lexicon import unit_words
+from pipeline.collection.dimensions.orders_ahead import behind_orders
 from pipeline.collection.dimensions.parts import FRAMED
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.mapping import ColumnMap
@@ -119,6 +120,7 @@ def fill(
     sized = any(values.get(field) is not None for field in _SIDES)
     told = sized or any(text.strip() for text, sentences in zip(texts, prose, strict=True) if not sentences)
     texts = ["" if told and sentences else plain_text(text) for text, sentences in zip(texts, prose, strict=True)]
+    texts = behind_orders(texts)
     # Lines are how such texts are written, and no fault of theirs.
     lines = ["; ".join(filter(None, (line.strip() for line in text.splitlines()))) for text in texts]
     values["dimensions"] = cells.text("dimensions", _joined(tuple(names)), lines, limit=TEXT_LIMIT)

@@ -1,6 +1,6 @@
 """Lists as they are kept for a use: catalogues of named museums, loans, checklists, schedules, mounts, machines.
 
-data/collections/by_use: seventy-three lists, written for Kouros in the forms of the museums, interfaces and papers that
+data/collections/by_use: ninety-five lists, written for Kouros in the forms of the museums, interfaces and papers that
 they are named after, some of their rows after public records; expected.csv is what a reader makes of each row. As the
 first twenty-seven were read before anything was mended for them, 83 of their 208 rows differed from that: 42 in their
 place or case, 32 in a size or weight, 17 in their class, 17 in how they are held, 33 in what they stand in or on, and 6
@@ -24,10 +24,10 @@ from pipeline.night.importing import proposed
 from pipeline.records import Item
 
 FOLDER = Path(__file__).parents[1] / "data" / "collections" / "by_use"
-MISSED = 9
+MISSED = 10
 """Rows that stand or hang otherwise than for a reader: a font, a treadle machine and a console radio on pedestals,
 a carpet of a drawing room, a jar on a shelf of the general store; a statue and a false door of which only remarks say
-how they are held, a melodeon as one that is worn, a facsimile of a codex in a frame."""
+how they are held, a melodeon as one that is worn, a facsimile of a codex in a frame, a wine cooler in a case."""
 SIDES = ("height_cm", "width_cm", "depth_cm", "mass_kg")
 
 

@@ -226,6 +226,11 @@ def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
     widest = [p for p in group if p.dimension == "diameter"]
     if len(widest) > 1:
         take("diameter", max(widest, key=lambda p: p.value or 0.0), f"diameter, the largest of {len(widest)}")
+    for side in ("height", "length"):
+        same = [p for p in group if p.dimension == side and not p.assumed]
+        if len(same) > 1:  # "L 35 cm (body), L 59 cm (overall)"
+            all_of_it = max(same, key=lambda p: p.value or 0.0)
+            group = [one for one in group if one not in same or one is all_of_it]
     assumed = tuple(part.dimension for part in group if part.assumed)
     usual = "length" not in assumed and (len(assumed) < len(USUAL) or assumed == USUAL)
     by = f", by the order {' x '.join(USUAL if usual else assumed)}"

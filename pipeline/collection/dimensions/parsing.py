@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from pipeline.collection.dimensions.labels import labelled, labels_in
 from pipeline.collection.dimensions.lexicon import label_words, languages, meanings, units
+from pipeline.collection.dimensions.pairs_alike import larger_of_pair
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.reader import Reader
 from pipeline.collection.dimensions.result import DimensionNote, DimensionPart, Dimensions
@@ -131,7 +132,7 @@ def parse(
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
     if len(order) > 1 and len(re.findall(_PLAIN, text)) == len(order) and _ONLY_STROKES.fullmatch(text):
         text = text.replace("/", "x")  # "165/230/170" under "Höhe/Breite/Tiefe"
-    head = _TWICE.sub(_blank, _QUALIFIED.sub(_unqualified, text[:LONGEST]))
+    head = _TWICE.sub(_blank, _QUALIFIED.sub(_unqualified, larger_of_pair(text[:LONGEST])))
     head = _BOTTOM.sub(r"\1base ", _PARTED_RUN.sub(_together, _of_whole(_ARTICLE.sub(_blank, head))))
     head = _undashed(_LEGEND.sub(_with_joins, _SLASHED.sub(_with_joins, head)))
     if prose:

@@ -62,6 +62,8 @@ _GROUPED = re.compile(r"(?:Tit|Loc|Phy|Cat|Col|Obj|Acc|Ide|Dim|Mea|Reg|Tax|Cla|S
 _FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _TYPED = re.compile(r"(?<=[a-z])(?:Txt|Clb|Vrt|Num|Voc|Lnu)$")
 """Behind a name in MuseumPlus: of which type it is, "HeightNum", "ObjTechnicalTermClb"."""
+_TABLED = re.compile(r"(?<=[^\W_])_?(?:_nesttab|_tab|NestTab)(?:_inner)?\d*$|(?<=[a-z])0$")
+"""Behind a name in EMu: that there may be several, "DimHeight_tab", "MeaReading0"."""
 _VALUE = re.compile(r"\.@(?:value|none|[a-z]{2})$")
 """Behind a name in linked data (JSON-LD): "dcterms:title.@value"."""
 _LABELS = re.compile(r"preferred labels?")
@@ -271,7 +273,7 @@ def named(name: str) -> ColumnMeaning | None:
     """
     if name in MAPPABLE:
         return ColumnMeaning(name, 0)
-    name = _VALUE.sub("", name)
+    name = _TABLED.sub("", _VALUE.sub("", name))
     if any(ELSEWHERE.intersection(plain(above).split()) for above in path_of(name)[:-1]):
         return None
     forms = [*_forms(name)]

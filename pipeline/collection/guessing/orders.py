@@ -14,6 +14,7 @@ from typing import Any
 
 from pipeline.collection.dimensions import labels, languages, parse
 from pipeline.collection.dimensions.choice import USUAL
+from pipeline.collection.dimensions.orders_ahead import is_order
 from pipeline.collection.dimensions.result import DimensionPart
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.columns import Column
@@ -45,6 +46,33 @@ _SOME = 1000
 _SIDES = frozenset({"height", "width", "depth", "length", "diameter"})
 _JOINED = re.compile(r"[x×]", re.IGNORECASE)
 _NUMBER = re.compile(r"(?:\d+\s+)?\d+/\d+|\d+(?:[.,]\d+)?[½¼¾⅛⅜⅝⅞]?", re.ASCII)
+
+
+def tells_orders(column: Column) -> bool:
+    """Say whether a column tells in which order another one has its sizes: "height x diameter (mm)".
+
+    Parameters
+    ----------
+    column : Column
+        Any.
+    """
+    some = column.distinct[:_SOME]
+    return bool(some) and sum(map(is_order, some)) >= MOST * len(some)
+
+
+def with_orders(texts: list[Column], columns: Sequence[Column]) -> list[Column]:
+    """Return the column of dimension texts behind that of their orders, where there is one of each.
+
+    Parameters
+    ----------
+    texts : list of Column
+        Those that are read.
+    columns : sequence of Column
+        Of the source.
+    """
+    orders = [one for one in columns if tells_orders(one)]
+    rest = [one for one in texts if one not in orders]
+    return [*orders, *rest] if len(orders) == len(rest) == 1 else texts
 
 
 def section_of(texts: Sequence[Column], prose: Sequence[Column], told: GuessNotes) -> dict[str, Any]:

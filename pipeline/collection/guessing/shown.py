@@ -11,6 +11,7 @@ from pipeline.collection.guessing.columns import Column, internal, untaken
 from pipeline.collection.guessing.fields import ASKED, MOST_WORDS, tells_display
 from pipeline.collection.guessing.names import called, named, path_of, plain
 from pipeline.collection.guessing.notes import GuessNotes
+from pipeline.collection.guessing.remarks import remarks_of_holding
 from pipeline.collection.places import case_in, parted
 from pipeline.collection.record import CHOICES
 from pipeline.tables.held_rows import HeldAs, stands_or_hangs, told_by
@@ -162,6 +163,9 @@ def _cases_and_spots(found: dict[str, Column], told: GuessNotes) -> None:
 
 def _by_what_it_holds(columns: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:
     column = _free_to_tell(columns, found)
+    if column is None and (remarks := remarks_of_holding(_free(columns, found), told)) is not None:
+        found["displayed"] = remarks
+        told.doubts.append(f"column {remarks.name!r} is taken to say of some objects how they are fixed")
     if column is not None:
         apart = sum(parted(text).room != text for text in column.distinct)
         if not {"gallery"} & {*found, *told.choices} and 2 * apart >= len(column.distinct):
@@ -201,6 +205,8 @@ def ways_beside(columns: Sequence[Column], found: Mapping[str, Column], told: Gu
         # "Sala" beside "Ubicación" with "Vitrina 6" and "Jardín": where in the room a thing is.
         able = (one for one in untaken(columns, found.values()) if called(one.name, "gallery") and not internal(one))
         second = next((one for one in able if not _of_stores(one) and _tells_ways(one, _SOME_WAYS)), None)
+    if first is not None and second is None and "displayed" not in told.choices:
+        second = remarks_of_holding(_free(columns, found), told)
     if first is None or second is None:
         return ()
     told.doubts.append(f"column {second.name!r} is taken to say more of how objects are held, by what it holds")
@@ -210,11 +216,16 @@ def ways_beside(columns: Sequence[Column], found: Mapping[str, Column], told: Gu
 
 def _free_to_tell(columns: Sequence[Column], found: Mapping[str, Column]) -> Column | None:
     """Return the column that no field takes, most of whose texts tell how things are held."""
-    free = [one for one in untaken(columns, found.values()) if one.filled and not one.prose]
+    able = (one for one in _free(columns, found) if not one.prose)
+    return max(filter(_holds_ways, able), key=lambda one: len(one.filled), default=None)
+
+
+def _free(columns: Sequence[Column], found: Mapping[str, Column]) -> list[Column]:
+    """Return the columns that no field takes, and whose names say nothing of what else they may be."""
+    free = [one for one in untaken(columns, found.values()) if one.filled]
     able = [one for one in free if (what := named(one.name)) is None or (what.field in _MAY_TELL and not what.internal)]
     # Where a thing is kept while it is not on display tells nothing of how it is shown.
-    able = [one for one in able if not _of_stores(one)]
-    return max(filter(_holds_ways, able), key=lambda one: len(one.filled), default=None)
+    return [one for one in able if not _of_stores(one)]
 
 
 def _of_stores(column: Column) -> bool:

@@ -12,6 +12,8 @@ from pipeline.collection.guessing.name_words import OWNERS
 from pipeline.collection.guessing.names import ARTIST, CALLED, DESCRIPTION, TEXTS, named, path_of, plain
 from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
+from pipeline.collection.places import case_in
+from pipeline.tables.held_rows import HeldAs, told_by
 
 SAYING = ("object_name", "classification", "medium", "material")
 """Fields beside which a title may be anything."""
@@ -176,10 +178,16 @@ def naming_among(columns: Sequence[Column], used: Iterable[Column], *, words_eno
         and len(one.distinct) >= _DIFFERENT * len(one.values)
         and not (one.measured or one.of_machine or one.numbering or one.pictured > _MOST or one.dimensional > _MOST)
         and placed(one) < _MOST
+        and sum(map(_of_holding, one.distinct)) < _MOST * len(one.distinct)
         and sum(len(text.split()) > 1 for text in one.filled) >= _MOST * len(one.filled)
         and (words_enough or things(one) >= _SOME_NAME)
     ]
     return max(able, key=lambda one: len(one.distinct), default=None)
+
+
+def _of_holding(text: str) -> bool:
+    """Whether a text tells how a thing is held, or in which case it is, and so is no name: "Bolted to oak frame"."""
+    return told_by(text) != HeldAs() or bool(case_in(text))
 
 
 _SOME_NAME = 0.3
