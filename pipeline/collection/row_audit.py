@@ -8,7 +8,8 @@ from typing import Any
 
 from pipeline.collection.cells import Cells
 from pipeline.collection.display_words import says_away
-from pipeline.collection.guessing.names import is_length, named, plain
+from pipeline.collection.guessing.columns import is_longitude
+from pipeline.collection.guessing.names import is_length, named
 from pipeline.collection.mapping import ColumnMap, Mapping
 from pipeline.collection.record import plausible
 from pipeline.collection.source_audit import SIDES, place_key, see_number, see_pairs, unit_columns, unit_named
@@ -22,17 +23,9 @@ EXAMPLES = 3
 """Rows that are named of each kind."""
 
 
-_NORTH = frozenset(["lat", "latitude", "latitud", "latitudine"])
-
-
 def _has_no_field(name: str) -> bool:
     """Whether a column is of lengths or thicknesses, of which the record has none of its own."""
     return is_length(name) or kind_of(name.rpartition(".")[2]) in ("length", "thickness")
-
-
-def _is_longitude(name: str, header: Sequence[str]) -> bool:
-    """Whether "long" is where on the earth something is, which a column of latitudes beside it tells, and no length."""
-    return plain(name).split()[-1:] == ["long"] and any(_NORTH.intersection(plain(other).split()) for other in header)
 
 
 def _is_left(name: str, mapping: Mapping) -> bool:
@@ -67,9 +60,7 @@ class RowAudit:
         self._lengths = [
             (at, name)
             for at, name in enumerate(header)
-            if name not in taken
-            and (_has_no_field(name) or _is_left(name, mapping))
-            and not _is_longitude(name, header)
+            if name not in taken and (_has_no_field(name) or _is_left(name, mapping)) and not is_longitude(name, header)
         ]
 
     def column_of(self, field: str, column: ColumnMap, row: Row, cells: Cells) -> ColumnMap:

@@ -109,8 +109,8 @@ class BaselineTable(Table):
     Attributes
     ----------
     method
-        None; mean; pre-event (the mean of the first `pre_event_s`); linear; polynomial; two-segment (Iwan et al. 1985,
-        Boore 2001), which keeps a permanent displacement, so that no corner is chosen for it.
+        "none"; "mean"; "pre-event" (the mean of the first `pre_event_s`); "linear"; "polynomial"; "two-segment" (Iwan
+        et al. 1985, Boore 2001), which keeps a permanent displacement, so that no corner is chosen for it.
     degree, of
         Of the polynomial, and whether it is fitted to the acceleration or the velocity.
     t1_s, t2_s, fit_from_s : float or None

@@ -96,3 +96,13 @@ def test_sizes_that_were_mistaken(text: str, read: list[tuple[str, float]]) -> N
 
 def test_the_bore_of_a_gun_is_of_a_part() -> None:
     assert [part.name for part in parse("L 82 cm; bore 12 mm").parts] == ["overall", "bore"]
+
+
+@pytest.mark.parametrize(("beside", "width"), [("lat", None), ("Titre bis", pytest.approx(0.04676089))])
+def test_a_longitude_is_no_length(beside: str, width: object, tmp_path: Path) -> None:
+    """4.676 degrees east of Greenwich, as a register of many museums has it; without a latitude it may be a length."""
+    heads = f"Numero_inventaire,Titre,{beside},long,Mesures"
+    rows = [f"2003.0.{n},Robe,43.67646,4.676089,H. {n} cm" for n in range(101, 107)]
+    items, _ = read(tmp_path, "\n".join([heads, *rows, ""]))
+    assert [item.height_m for item in items] == [pytest.approx(n / 100.0) for n in range(101, 107)]
+    assert all(item.width_m == width for item in items)

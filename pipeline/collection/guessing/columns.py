@@ -237,6 +237,22 @@ def columns_of(header: Iterable[str], rows: Iterable[Sequence[str]]) -> list[Col
     return [column for column in out if column.name]
 
 
+_NORTH = frozenset(["lat", "latitude", "latitud", "latitudine"])
+
+
+def is_longitude(name: str, header: Iterable[str]) -> bool:
+    """Say whether "long" is where on the earth something is, which a column of latitudes tells, and no length.
+
+    Parameters
+    ----------
+    name : str
+        Of a column.
+    header : iterable of str
+        The names of all columns beside it.
+    """
+    return plain(name).split()[-1:] == ["long"] and any(_NORTH.intersection(plain(other).split()) for other in header)
+
+
 def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
     """Return the columns that may be a field, by field, the likeliest first.
 
@@ -254,6 +270,8 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
     dict of str to list of Column
         Fields of the record, `names.TEXTS` among them.
     """
+    header = [column.name for column in columns]
+    columns = [column for column in columns if not is_longitude(column.name, header)]
     said = {id(column): named(column.name) for column in columns}
     open_ = {id(column): column.name for column in columns if said[id(column)] is None and column.measured}
     said.update(short_heads(open_, {what.field for what in said.values() if what is not None}))

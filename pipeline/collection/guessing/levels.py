@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from pipeline.collection.guessing.columns import Column, internal
-from pipeline.collection.guessing.names import plain
+from pipeline.collection.guessing.names import called, plain
 from pipeline.collection.guessing.notes import GuessNotes
 
 _NUMBERED = re.compile(r"(.*\D)0?(\d)\D?", re.DOTALL)
@@ -51,7 +51,8 @@ def levels_of_place(
 def _numbered(where: Column, columns: Sequence[Column]) -> tuple[Column, ...]:
     """Return the columns called as the first level is, but for their numbers: 1, 2 and so on."""
     first = _NUMBERED.fullmatch(where.name)
-    if first is None:
+    if first is None or not called(where.name, "gallery"):
+        # A table without a head has "Column 1", "Column 2".
         return ()
     named = ((_NUMBERED.fullmatch(one.name), one) for one in columns if one.filled)
     levels = {int(found[2]): one for found, one in named if found is not None and found[1] == first[1]}

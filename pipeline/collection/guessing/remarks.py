@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.notes import GuessNotes
+from pipeline.records import Hanging, Support
 from pipeline.tables.held_rows import HeldAs, told_by
 
 _LONGEST = 70
@@ -51,5 +52,8 @@ def remarks_of_holding(columns: Sequence[Column], told: GuessNotes) -> Column | 
 
 
 def _fixed(text: str) -> bool:
-    says = len(text) <= _LONGEST and told_by(text).support is not None
-    return says and _BUILDING.search(text) is not None and _PAST.search(text) is None
+    if len(text) > _LONGEST or _BUILDING.search(text) is None or _PAST.search(text) is not None:
+        return False
+    told = told_by(text)
+    # To name a wall is not enough: painters are called Wall, William C., and LeWitt, Sol.
+    return told.support is Support.FASTENED or told.hanging is Hanging.FIXED
