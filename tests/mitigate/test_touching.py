@@ -199,8 +199,8 @@ def test_what_is_done_to_a_service_is_done_to_each_piece(motion: Motion) -> None
 
 
 def test_what_rolls_stands_on_the_floor() -> None:
-    camera = Item("1", "G", "Studio camera", object_name="camera", medium="beech", height_m=0.75, width_m=0.45,
-                  depth_m=0.8, displayed="sur roulettes")  # fmt: skip
+    camera = Item("1", "G", "Studio camera", object_name="camera", medium="beech", height_m=0.6, width_m=0.45,
+                  depth_m=0.5, displayed="sur roulettes")  # fmt: skip
     assert classify(camera).furniture is Furniture.FLOOR
     assert classify(replace(camera, displayed="freestanding")).furniture is Furniture.PEDESTAL
     toy = replace(camera, object_name="toy", title="Horse on wheels", height_m=0.25, width_m=0.25, depth_m=0.1)
