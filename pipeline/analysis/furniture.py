@@ -14,7 +14,6 @@ from math import hypot, radians
 
 from pipeline.analysis.footing import on_wheels
 from pipeline.analysis.house.matching import HouseEffect
-from pipeline.analysis.told import hangs_in_case
 from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Anchorage, Estimate, Furniture, Item, Origin, Scene, Support
 from pipeline.records import phrases as say
@@ -213,8 +212,6 @@ def furniture_of(item: Item, object_class: str, support: Support, house: HouseEf
         named = (kind for kind in (Furniture.PEDESTAL, Furniture.SHELF) if _named(kind).search(case))
         kind = next(named, Furniture.SHOWCASE)
         return FurnitureGuess(kind, Origin.DERIVED, f"for its record names the case or plinth {case!r}")
-    if hangs and hangs_in_case(item):
-        return FurnitureGuess(Furniture.SHOWCASE, Origin.DERIVED, f"for its record names the case or plinth {case!r}")
     row = _usual(object_class, support.value if hangs else STANDING, _largest(item, hangs=hangs))
     if row.furniture in _CASES and not hangs and in_the_open(item.gallery):
         words = f"assumed for: {IN_THE_OPEN}, usual_furniture.csv; not recorded"

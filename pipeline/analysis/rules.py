@@ -417,7 +417,7 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
         lidded = []
     for part in parts:
         found = WORD.findall(part)
-        if len(found) > 1 and found[-1] in _ON_WALLS and found[-2] in of.by_word and of.names(found[-2], ("relief",)):
+        if len(found) > 1 and found[-1] in _ON_WALLS and of.names(found[-2], ("relief",)):
             found.pop()
         said = [
             (end - 1 - len(before), word)

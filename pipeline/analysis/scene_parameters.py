@@ -366,9 +366,8 @@ class SceneParameters:
         for name, factors in (("lever", bends), ("frequency", limit("braced_stiffness"))):
             one = self.found.get(name)
             if one is not None and one.origin is not Origin.MEASURED:
-                low, value, high = factors.low * one.low, factors.value * one.value, factors.high * one.high
                 note = ", ".join(filter(None, (one.note, HELD_ABOVE)))
-                self.found[name] = replace(one, low=low, value=value, high=high, note=note)
+                self.found[name] = one.times(factors.low, factors.value, factors.high, note)
         self.doubts.append(say.HELD_BEHIND(factor=bends))
 
     def _bending(self, section: Section, mass: Estimate, cg: Estimate) -> None:

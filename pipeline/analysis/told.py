@@ -91,11 +91,8 @@ def as_displayed(item: Item) -> Item:
     # A stand within a case is no pedestal of its own, nor is its floor the room's: "case 3", fixed to its base.
     within = told.furniture in (Furniture.PEDESTAL, Furniture.FLOOR) and _names_case(item)
     # What hangs from a line or a hook of a case is shaken as that is.
-    cased = (
-        Furniture.SHOWCASE
-        if told.support in _ABOVE and _names_case(item) and not _WALL.search(item.displayed)
-        else None
-    )
+    hangs_in_case = told.support in _ABOVE and _names_case(item) and not _WALL.search(item.displayed)
+    cased = Furniture.SHOWCASE if hangs_in_case else None
     # Of what is recorded to hang or to stand the words for the other are about something else.
     stands = item.support is not None and item.support not in _ABOVE
     return replace(
@@ -340,18 +337,6 @@ def in_case(item: Item, row: ObjectClass) -> bool:
 def _footing(item: Item) -> bool:
     measured = item.base_width_m or item.base_depth_m or item.contact_polygon
     return bool(measured) or item.tilt_angle_deg is not None
-
-
-def hangs_in_case(item: Item) -> bool:
-    """Say whether what is told to hang does so in a case: its record names one, and no wall or ceiling of the room.
-
-    Parameters
-    ----------
-    item : Item
-        The record.
-    """
-    told = told_by(item.displayed)
-    return told.support in _ABOVE and told.furniture is None and _names_case(item) and not _named_wall(item)
 
 
 def _names_case(item: Item) -> bool:

@@ -219,7 +219,8 @@ def _places_of_cases(found: dict[str, Column], columns: Sequence[Column], told: 
 
 
 def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told: GuessNotes) -> Guess:
-    able = candidates([column for column in columns if not tells_orders(column)])
+    orders = [column for column in columns if tells_orders(column)]
+    able = candidates([column for column in columns if column not in orders])
     _add_misspelt(columns, able, told)
     found = _chosen(name, columns, able, told)
     _places_of_cases(found, columns, told)
@@ -336,7 +337,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         fields["on_display"] = gone
     document["columns"] = fields
     _cases_in_places(fields, levels or [column for column in (found.get("gallery"), usual) if column is not None], told)
-    texts = with_orders(texts_among(columns, used), columns)
+    texts = with_orders(texts_among(columns, used), orders)
     prose: list[Column] = []
     wanted = told.choices.get("dimensions")
     if wanted is not None:

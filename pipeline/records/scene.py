@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 
 
@@ -294,6 +294,22 @@ class Estimate:
     source: str = ""
     per: str = ""
     cause: str = ""
+
+    def times(self, low: float, best: float, high: float, note: str = "") -> Estimate:
+        """Return the number with its ends and its best value each multiplied by a factor.
+
+        Parameters
+        ----------
+        low, best, high : float
+            The factors [-].
+        note : str
+            What it says then, see the class.
+
+        Returns
+        -------
+        Estimate
+        """
+        return replace(self, value=best * self.value, low=low * self.low, high=high * self.high, note=note)
 
     @classmethod
     def measured(cls, value: float, unit: str, note: str = "") -> Estimate:

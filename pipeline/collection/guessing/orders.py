@@ -60,17 +60,16 @@ def tells_orders(column: Column) -> bool:
     return bool(some) and sum(map(is_order, some)) >= MOST * len(some)
 
 
-def with_orders(texts: list[Column], columns: Sequence[Column]) -> list[Column]:
+def with_orders(texts: list[Column], orders: Sequence[Column]) -> list[Column]:
     """Return the column of dimension texts behind that of their orders, where there is one of each.
 
     Parameters
     ----------
     texts : list of Column
         Those that are read.
-    columns : sequence of Column
-        Of the source.
+    orders : sequence of Column
+        Those of the source of which `tells_orders` holds.
     """
-    orders = [one for one in columns if tells_orders(one)]
     rest = [one for one in texts if one not in orders]
     return [*orders, *rest] if len(orders) == len(rest) == 1 else texts
 

@@ -235,11 +235,6 @@ def exactly(value: float, unit: str, note: str) -> Estimate:
     return Estimate(value, unit, Origin.DERIVED, value, value, note)
 
 
-def multiplied(estimate: Estimate, low: float, best: float, high: float, note: str = "") -> Estimate:
-    """Return an estimate whose ends and best value are each multiplied by a factor."""
-    return replace(estimate, value=best * estimate.value, low=low * estimate.low, high=high * estimate.high, note=note)
-
-
 def with_parameters(scene: Scene, **found: Estimate) -> Scene:
     """Return a scene with some of its parameters replaced or added."""
     return replace(scene, parameters={**scene.parameters, **found})

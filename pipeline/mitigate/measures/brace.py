@@ -33,7 +33,6 @@ from pipeline.mitigate.measures.base import (
     Measure,
     held,
     knows_section,
-    multiplied,
     with_parameters,
 )
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
@@ -116,4 +115,4 @@ def _braced(estimate: Estimate, factors: tuple[float, float, float], once: tuple
         low, best, high = (factor / one for factor, one in zip(factors, once, strict=True))
     else:
         low, best, high = factors
-    return multiplied(estimate, low, best, high, ", ".join(filter(None, (estimate.note, BRACED))))
+    return estimate.times(low, best, high, ", ".join(filter(None, (estimate.note, BRACED))))

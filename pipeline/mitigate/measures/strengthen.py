@@ -11,7 +11,6 @@ from pipeline.mitigate.measures.base import (
     Measure,
     held,
     knows_section,
-    multiplied,
     round_up,
     with_parameters,
 )
@@ -45,7 +44,7 @@ class Strengthen(Measure):
         times = parameters["enlargement"]
         powers = {"area": 2, **dict.fromkeys(MODULI, 3)}
         known = {name: power for name, power in powers.items() if name in scene.parameters}
-        found = {name: multiplied(scene.parameters[name], *(times**power,) * 3) for name, power in known.items()}
+        found = {name: scene.parameters[name].times(*(times**power,) * 3) for name, power in known.items()}
         if "frequency" in scene.parameters:
             # With the root of the second moment, the fourth power, if all that bends is made thicker; less if not.
             f = scene.parameters["frequency"]

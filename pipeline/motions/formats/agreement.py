@@ -86,16 +86,17 @@ def said_time(lines: Lines, index: int, said: float, data: Array, dt: float) -> 
     FormatError
         That names both.
     """
-    size = np.abs(data - data.mean())
-    for one in (np.abs(data), size):
-        if one.max() == 0.0:
-            return
-    crests = np.flatnonzero((np.abs(data) >= ALIKE * np.abs(data).max()) | (size >= ALIKE * size.max()))
+    if said < EARLIEST:
+        return
+    sizes = np.abs(data), np.abs(data - data.mean())
+    if not all(size.any() for size in sizes):
+        return
+    crests = np.flatnonzero(np.logical_or(*(size >= ALIKE * size.max() for size in sizes)))
 
     def there(step: float) -> bool:
         return bool(np.abs(crests * step - said).min() <= TIME_TOLERANCE + SAMPLES * step)
 
-    if said < EARLIEST or there(dt):
+    if there(dt):
         return
     factor = next((factor for factor in MISTAKEN if there(factor * dt)), None)
     if factor is not None:

@@ -101,26 +101,21 @@ def off_step(times: Array) -> tuple[int, str, str]:
     steps = np.diff(times)
     usual = float(np.median(steps))
     worst = int(np.argmax(np.abs(steps - usual))) + 1
-    step, told = (
-        float(steps[worst - 1]),
-        f"its times go on by {{:.6g}} s to {times[worst]:g} s, and by {usual:.6g} s elsewhere",
-    )
+    step = float(steps[worst - 1])
+    told = f"its times go on by {step:.6g} s to {times[worst]:g} s, and by {usual:.6g} s elsewhere"
     if (steps < 0.0).mean() > _NO_TIME:
         wrong = "its first column goes back and forth, as no time does"
-        return (
-            worst,
-            wrong,
-            "name the columns: kouros motions convert FILE --columns ns,ew,ud --dt 0.01 --unit g --out FOLDER",
-        )
+        remedy = "name the columns: kouros motions convert FILE --columns ns,ew,ud --dt 0.01 --unit g --out FOLDER"
+        return worst, wrong, remedy
     if usual > 0.0 and step > 1.5 * usual:
-        return worst, told.format(step), "samples are missing: give the record without the gap, or its longer part"
+        return worst, told, "samples are missing: give the record without the gap, or its longer part"
     if usual <= 0.0:
         worst = int(np.argmin(steps)) + 1
         wrong = f"it and {int((steps <= 0.0).sum()) - 1} rows more have the time of the row before them"
         return worst, wrong, "rows came twice, or times are rounded too far: give equal time steps"
     if step <= 0.0:
-        return worst, told.format(step), "rows came twice, or their times are rounded too far: give equal time steps"
-    return worst, told.format(step), "give equal time steps: resample the record first"
+        return worst, told, "rows came twice, or their times are rounded too far: give equal time steps"
+    return worst, told, "give equal time steps: resample the record first"
 
 
 def even_step(times: Array, digit: float) -> float | None:

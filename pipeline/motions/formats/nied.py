@@ -11,6 +11,7 @@ source : National Research Institute for Earth Science and Disaster Resilience, 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -65,9 +66,8 @@ def traces(lines: Lines, headonly: bool) -> list[Any]:
         raise lines.error(keys.end, f"expected a time, found {record_text.shown(lines.text(keys.end))}")
     start = trace_headers.start_time(lines, keys.end, *map(float, moment.groups())) - _JAPAN
     rows = [line.partition(b",")[2] for line in lines.lines[keys.end :]]
-    table = blocks.rows(
-        Lines(lines.file, lines.lines[: keys.end] + rows, lines.skipped), keys.end, 1 + len(names), "samples", b","
-    )
+    told = replace(lines, lines=lines.lines[: keys.end] + rows)
+    table = blocks.rows(told, keys.end, 1 + len(names), "samples", b",")
     announced = round(_value(lines, keys, "DurationTime(s)") * rate)
     if announced != len(table):
         wrong = f"announces {announced} samples, and {len(table)} are there"

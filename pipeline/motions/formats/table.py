@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import re
 from array import array
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -107,9 +108,7 @@ def _unquoted(lines: Lines, start: int) -> Lines:
     """The same without the quotes that programs put around every cell."""
     if start >= len(lines) or b'"' not in lines.lines[start]:
         return lines
-    return Lines(
-        lines.file, lines.lines[:start] + [line.replace(b'"', b"") for line in lines.lines[start:]], lines.skipped
-    )
+    return replace(lines, lines=lines.lines[:start] + [line.replace(b'"', b"") for line in lines.lines[start:]])
 
 
 def _with_points(lines: Lines, start: int, separator: bytes | None) -> Lines:
@@ -119,9 +118,7 @@ def _with_points(lines: Lines, start: int, separator: bytes | None) -> Lines:
     first = lines.lines[start]
     if b"." in first or not re.search(rb"\d,\d", first):
         return lines
-    return Lines(
-        lines.file, lines.lines[:start] + [line.replace(b",", b".") for line in lines.lines[start:]], lines.skipped
-    )
+    return replace(lines, lines=lines.lines[:start] + [line.replace(b",", b".") for line in lines.lines[start:]])
 
 
 def _separator(row: bytes) -> bytes | None:
