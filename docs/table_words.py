@@ -40,6 +40,7 @@ TABLE_WORDS = {
     "proportions": "One size over another one by class: 5th, 50th and 95th percentile; known: how many must be "
     "recorded.",
     "rules": "Which class a record names; the first rule that holds decides.",
+    "word_lists": "Lists of words that rows of rules.csv share; a cell has them all by `@` and the list's name.",
     "class_signs": "Words of materials and titles that say something of the class, in eight languages.",
     "class_weights": "What each sign says for each class: logarithms of odds, found from labelled objects.",
     "slender": "How much of an object of a class is about as slender as its critical section, by share of its height.",

@@ -8,6 +8,8 @@ words          : the naming word is one of these; `*statuette` also takes words 
 medium         : material or medium has one of these words; what an object stands on (a base) does not count;
                  `=oil paint` is a medium of nothing else
 shape          : all of these measures hold (see `pipeline.analysis.shapes`)
+
+An entry `@sculpture` of classification, words or medium stands for all words of that list of tables/word_lists.csv.
 """
 
 from __future__ import annotations
@@ -28,6 +30,7 @@ from pipeline.tables import Row, TableError, read_table, table
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.ideographs import shortened_signs
 from pipeline.tables.rows import Entries, checked, once, unmarked
+from pipeline.tables.word_lists import Listed
 
 _IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")
 WORD = re.compile(r"[^\W\d_]+")
@@ -91,7 +94,9 @@ def words_of(entries: Iterable[str]) -> re.Pattern[str]:
     Words of scripts without spaces are found within others; `=oil paint` is all that there is, but for a date.
     """
     entries = tuple(entries)
-    alone = sorted({re.escape(fold(entry[1:])) for entry in entries if entry.startswith("=")}, key=len, reverse=True)
+    alone = sorted(
+        {re.escape(fold(entry[1:])) for entry in entries if entry[:1] == "="}, key=lambda word: (-len(word), word)
+    )
     whole = [rf"\A\s*(?:{'|'.join(alone)})s?\s*(?:[,;(.]?\D{{0,4}}\d{{4}}\b.*)?\Z"] if alone else []
     words = sorted({fold(entry) for entry in entries if entry[:1] != "="}, key=lambda word: (-len(word), word))
     within = [word for word in words if IDEOGRAPH.search(word)]
@@ -153,9 +158,9 @@ class _RuleRow(BaseModel):
     rule: Annotated[str, AfterValidator(_name)]
     object_class: Annotated[str, Field(alias="class"), AfterValidator(_known_class)]
     aat: Annotated[Entries, _each(_identifier)]
-    classification: Entries
-    words: Annotated[Entries, _each(_word)]
-    medium: Entries
+    classification: Listed
+    words: Annotated[Listed, _each(_word)]
+    medium: Listed
     shape: Annotated[tuple[str, ...], _each(_shape), BeforeValidator(str.split)]
     why: str
 

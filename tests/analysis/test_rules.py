@@ -140,6 +140,7 @@ def test_most_rules_are_used_by_one_real_collection_and_the_last_holds_for_the_r
         ({"words": "vase|***"}, r"column 'words': '\*\*\*' has no word; write words, or an ending"),
         ({"words": "va*se"}, r"column 'words': 'va\*se' has no word"),
         ({"rule": "rest"}, r"line 3, rule 'rest': column 'rule': line 2 has this name; give each row its own"),
+        ({"words": "vase|@being"}, r"column 'words': word_lists.csv has no list 'being'; did you mean 'beings'"),
         ({"rule": "a: b"}, r"line 2, rule 'a: b': column 'rule': must be a name without a colon"),
     ],
 )
@@ -147,6 +148,15 @@ def test_a_mistake_in_the_table_is_named(cells: dict[str, str], message: str) ->
     first = row(**{"rule": "a", "class": "vessel", "words": "vase", **cells})
     with pytest.raises(TableError, match=message):
         read_rules((first, row(**LAST)), assumed())
+
+
+def test_a_row_has_all_words_of_a_list() -> None:
+    one = row(rule="a", words="@heads|mask", medium="@stone", **{"class": "bust"})
+    (rule, _) = read_rules((one, row(**LAST)), assumed()).rules
+    assert rule.words | set(rule.endings) >= {"mask", "head", "tete", "kopf"}
+    assert rule.medium is not None
+    assert rule.medium.search("white marble")
+    assert not rule.medium.search("oak")
 
 
 def test_the_last_row_must_take_the_rest() -> None:
