@@ -8,9 +8,9 @@ from typing import Any
 
 from pipeline.collection.dimensions.structured import words_of
 from pipeline.collection.mapping import ColumnMap
-from pipeline.tables import table
 from pipeline.tables.material_words import begins_with_material, folded, material_words
 from pipeline.tables.rows import UNSPACED
+from pipeline.tables.word_lists import names_of_things
 
 _WORD = re.compile(r"[^\W\d_]+")
 _DATED = re.compile(r"\W*(?:(?:c|ca|circa|um|vers|about|verso|hacia)\b\W*)?\d{1,4}\b[^,;:]{0,40}\Z", re.IGNORECASE)
@@ -117,10 +117,8 @@ def _things() -> tuple[frozenset[str], tuple[str, ...]]:
     """Return the names of things that hang flat neither on nor as a wall, and the endings of such names."""
     entries = {
         folded(entry)
-        for row in table("rules")
-        if row["class"] not in ("framed", "wall_painting", "installation")
-        for entry in row["words"].split("|")
-        if entry
+        for object_class, entry in names_of_things()
+        if object_class not in ("framed", "wall_painting", "installation")
     }
     endings = tuple(entry[1:] for entry in entries if entry[0] == "*")
     return frozenset(entry for entry in entries if entry[0] != "*"), endings

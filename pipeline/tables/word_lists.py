@@ -1,6 +1,6 @@
 """Words that several rows share: word_lists.csv.  A cell has all words of a list where it says `@` and its name."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Annotated
 
@@ -69,6 +69,19 @@ def listed(entries: tuple[str, ...]) -> tuple[str, ...]:
         else:
             raise InputError(f"word_lists.csv has no list {name[:80]!r}{near(name, lists)}")
     return tuple(dict.fromkeys(out))
+
+
+def names_of_things() -> Iterator[tuple[str, str]]:
+    """Yield each word by which rules.csv knows a thing, an ending behind its asterisk, after its class.
+
+    Yields
+    ------
+    tuple[str, str]
+        Class and word, as they are written.
+    """
+    for row in table("rules"):
+        for word in listed(tuple(filter(None, row["words"].split("|")))):
+            yield row["class"], word
 
 
 Listed = Annotated[Entries, AfterValidator(listed)]

@@ -21,6 +21,7 @@ from pipeline.collection.sources.cards import LABELLED
 from pipeline.collection.sources.delimited import cut_at
 from pipeline.collection.sources.heads import is_of_units, joined_heads
 from pipeline.tables import table
+from pipeline.tables.word_lists import names_of_things
 
 LOOKED_AT = 40
 """Rows at the beginning among which the header is looked for."""
@@ -80,7 +81,7 @@ def _known_words(head: bytes, encoding: str) -> int:
 @cache
 def _vocabulary() -> frozenset[str]:
     texts = (name for row in table("column_names") for name in row["names"].split("|"))
-    things = (word for row in table("rules") for word in row["words"].split("|"))
+    things = (word for _, word in names_of_things())
     words = {word for text in (*texts, *things) for word in _LETTERS.findall(text.casefold())}
     return frozenset(word for word in words | meanings().keys() if not word.isascii())
 
