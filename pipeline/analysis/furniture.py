@@ -175,10 +175,10 @@ class FurnitureGuess:
 
 @cache
 def _usual(object_class: str, support: str, height: float) -> UsualFurniture:
-    here = [row for row in usual_furniture() if row.support == support and height >= row.taller_than]
-    mine = [row for row in here if row.object_class == object_class]
-    others = [row for row in here if row.object_class == ANY]
-    return max(mine or others, key=lambda row: row.taller_than)
+    here = [row for row in usual_furniture() if row.support == support and (height >= row.taller_than or row.unsized)]
+    mine = [row for row in here if row.object_class == object_class] or [row for row in here if row.object_class == ANY]
+    unsized = [row for row in mine if row.unsized and not height]
+    return max(unsized or [row for row in mine if height >= row.taller_than], key=lambda row: row.taller_than)
 
 
 def furniture_of(item: Item, object_class: str, support: Support, house: HouseEffect) -> FurnitureGuess:

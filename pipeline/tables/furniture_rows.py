@@ -9,7 +9,7 @@ from pipeline.errors import InputError
 from pipeline.records import Anchorage, Furniture, Support
 from pipeline.tables import Range, TableError, table
 from pipeline.tables.assumed_rows import AssumedRow
-from pipeline.tables.rows import Number, Optional, TableRow, Text, checked, in_order
+from pipeline.tables.rows import Number, Optional, TableRow, Text, YesNo, checked, in_order
 
 ANY = "*"
 """In the column object_class of usual_furniture.csv: of every class that no other row names."""
@@ -188,6 +188,8 @@ class UsualFurniture(TableRow):
         How it is held: hung, suspended, or standing for all others.
     taller_than : float
         Height from which it holds [m]; of several rows that hold the one of the largest counts.
+    unsized : bool
+        Whether it is what holds where no size is recorded, in place of the row from 0 m on.
     furniture : Furniture
         What it stands on or hangs from.
     source : str
@@ -197,6 +199,7 @@ class UsualFurniture(TableRow):
     object_class: Text
     support: Literal["standing", "hung", "suspended"]
     taller_than: Annotated[Number, Field(ge=0.0)]
+    unsized: YesNo
     furniture: Furniture
     source: Text
 

@@ -152,13 +152,34 @@ def test_no_case_stands_under_the_sky(place: str, kind: Furniture) -> None:
 
 def test_only_rows_that_say_so_leave_an_object_on_bare_ground() -> None:
     """A cabinet stands on the floor because a row of the table says it, and the scene names the table."""
-    bare = [row for row in usual_furniture() if row.furniture is Furniture.FLOOR and not row.taller_than]
+    bare = [row for row in usual_furniture() if row.furniture is Furniture.FLOOR and row.unsized]
     assert {row.object_class for row in bare} == {"seat", "table"}
     scene = classify(replace(VASE, title="Cabinet", object_name="Cabinet", height_m=1.2))
     assert (scene.furniture, filter_of(scene)) == (Furniture.FLOOR, None)
     assert any(
         "the floor itself, assumed for: cabinet" in text and "usual_furniture.csv" in text for text in scene.assumptions
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "height", "kind"),
+    [
+        ("Chair", 0.9, Furniture.FLOOR),
+        ("Chair", None, Furniture.FLOOR),  # nobody said that it is a toy
+        ("Chair", 0.12, Furniture.SHOWCASE),
+        ("Footstool", 0.25, Furniture.FLOOR),
+        ("Table", 0.15, Furniture.SHOWCASE),
+        ("Table", 0.75, Furniture.FLOOR),
+        ("Bust", 0.08, Furniture.SHOWCASE),
+        ("Bust", 0.5, Furniture.PEDESTAL),
+        ("Bust", None, Furniture.PEDESTAL),
+        ("Ship model", 0.1, Furniture.SHOWCASE),
+        ("Ship model", 0.6, Furniture.PEDESTAL),
+    ],
+)
+def test_what_is_smaller_than_its_kind_stands_in_a_case(name: str, height: float | None, kind: Furniture) -> None:
+    side = None if height is None else 0.6 * height
+    assert furniture_kind(Item("1", "G", object_name=name, height_m=height, width_m=side, depth_m=side)) is kind
 
 
 # ----------------------------------------------------------------------------------------------------------------------
