@@ -200,6 +200,7 @@ def as_classed(item: Item) -> Item:
 def readings(item: Item, among: RuleTable | None = None) -> Readings:
     """Return what each part of a record says of the class, and the rule that decides among them."""
     of = among or rules()
+    unnamed = not item.object_name
     item = as_classed(item)
     if item.aat:
         recorded = identifiers(item.aat) & of.aat
@@ -245,7 +246,7 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     speaks = title if not flat or (title is not None and title.rule.name in FORMATS) else None
     if name is not None and name.rule.object_class in _THINGS and _OF_TECHNIQUE.search(fold(item.classification)):
         classed = None
-    if classed is not None and speaks is title is not None and _is_only_called_a_picture(title, classed):
+    if classed is not None and speaks is title is not None and _is_only_called_so(title, classed, unnamed=unnamed):
         speaks = None
     called_so = name or speaks
     if called_so is not None and called_so.rule.name in FORMATS:
@@ -256,9 +257,15 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     return Readings(decided, decided.rule.name in of.own, name, classed, made, title)
 
 
-def _is_only_called_a_picture(title: RuleMatch, classed: RuleMatch) -> bool:
-    """Whether a title names a picture of what is classed as sculpture: the kind of thing decides before its title."""
-    return title.rule.object_class in PICTURES and classed.rule.object_class in (*_FIGURES, "bust")
+def _is_only_called_so(title: RuleMatch, classed: RuleMatch, *, unnamed: bool) -> bool:
+    """Whether a title names what is classed as sculpture a picture, or a thing of no shape of its own.
+
+    The kind of thing decides before its title: a bronze Telephone or Still Life is a sculpture, whatever it shows; but
+    a plaster cast of a column is a column.
+    """
+    if classed.rule.object_class not in (*_FIGURES, "bust", "relief"):
+        return False
+    return title.rule.object_class in PICTURES or (unnamed and title.rule.object_class == "object")
 
 
 def without_name(read: Readings, of: RuleTable | None = None) -> Readings:

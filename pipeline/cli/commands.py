@@ -178,7 +178,11 @@ def _check_numerics(options: Options, as_json: bool) -> None:
 @click.option(
     "--resume", is_flag=True, help="Go on where a run was cut off, with the inventory as it is: the source is not read."
 )
-@click.option("--explain", metavar="OBJECT", help="Print the whole chain of reasoning for one object instead.")
+@click.option(
+    "--explain",
+    metavar="OBJECT",
+    help="Print the chain of reasoning for one object instead; with -v each of its steps.",
+)
 @as_json
 @click.pass_obj
 def run(

@@ -1,8 +1,9 @@
 """`kouros run --explain`: the chain of reasoning for one object as text or JSON."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import click
@@ -41,16 +42,31 @@ def print_explanation(settings: "Settings", number: str, options: Options, as_js
         click.echo(json.dumps([json_ready(asdict(one)) for one in explained], indent=2, default=str))
     else:
         # What a record, a manifest or a person's reason holds must not steer a terminal.
-        click.echo("\n\n".join("\n".join(map(printable, explanation_lines(one))) for one in explained))
+        lines = (explanation_lines(one, every=options.verbose) for one in explained)
+        click.echo("\n\n".join("\n".join(map(printable, one)) for one in lines))
 
 
-def explanation_lines(explained: "Explanation") -> Iterator[str]:
-    """Yield the reasoning for one object, line by line."""
+def explanation_lines(explained: "Explanation", *, every: bool = False) -> Iterator[str]:
+    """Yield the reasoning for one object, line by line: what came of it first.
+
+    Parameters
+    ----------
+    explained : Explanation
+        Of the object.
+    every : bool
+        Each step of each motion; else what the steps of a motion come to.
+
+    Yields
+    ------
+    str
+        A line.
+    """
     from pipeline.report.pages.chances import worth_words
 
     scene = explained.scene
     item = scene.item
     yield f"{item.object_number}  {item.title}  ({item.gallery})"
+    yield from _in_short(explained)
     yield f"  class    {scene.object_class}, by rule {scene.rule}"
     yield from _class_lines(explained)
     yield f"  support  {scene.support.value}" + (f", on floor {scene.floor}" if scene.floor else "")
@@ -63,18 +79,32 @@ def explanation_lines(explained: "Explanation") -> Iterator[str]:
     for missing in scene.missing:
         yield f"  missing  {missing}"
     yield "  numbers"
+    told: set[str] = set()
     for name, estimate in scene.parameters.items():
-        yield f"    {name:<22}{_estimate(estimate)}"
+        yield f"    {name:<22}{_estimate(estimate, told)}"
     if scene.skipped:
         yield "  not run"
         for title, why in scene.skipped.items():
             yield f"    {title}: {why}"
     for reasoning in explained.reasonings:
-        yield from _reasoning(reasoning)
+        yield from _reasoning(reasoning, every)
     for found in explained.likelihoods:
         yield from _likelihood(found)
     for advice in explained.advice:
         yield from _advice(advice)
+
+
+def _in_short(explained: "Explanation") -> Iterator[str]:
+    """Yield what came of it: how likely harm is, each verdict, and what is advised."""
+    for found in explained.likelihoods:
+        yield f"  harm     {found.band.value} ({figures(found.probability, 3)}), {found.level}"
+    for reasoning in explained.reasonings:
+        finding = reasoning.finding
+        yield f"  verdict  {finding.title}: {finding.verdict.value}" + (
+            f", {finding.outcome}" if finding.outcome else ""
+        )
+    for advice in explained.advice:
+        yield f"  advice   {advice.title}"
 
 
 def _class_lines(explained: "Explanation") -> Iterator[str]:
@@ -104,13 +134,12 @@ def _likelihood(found: "Likelihood") -> Iterator[str]:
         yield f"    open      {what} alone may change what is decided; it is worth {found.worth:.2g}"
 
 
-def _reasoning(reasoning: "Reasoning") -> Iterator[str]:
+def _reasoning(reasoning: "Reasoning", every: bool) -> Iterator[str]:
     finding = reasoning.finding
     yield f"  {finding.title}, {finding.level} [{finding.demand_name}, {finding.unit}]"
     if finding.screen:
         yield f"    screen    {finding.screen} (never decides)"
-    for taken in reasoning.taken:
-        yield f"    {taken.step:<10}{taken.motion}, {taken.inputs}: {taken.told or _taken(taken)}"
+    yield from map(_step, reasoning.taken) if every else _steps(reasoning.taken)
     yield f"    capacity  {_estimate(reasoning.capacity)}"
     at_most = "at most " if finding.fidelity == "bound" and finding.error else ""
     span = "at most" if finding.range_is == "bounds" else f"{_number(finding.low)} to"
@@ -119,6 +148,24 @@ def _reasoning(reasoning: "Reasoning") -> Iterator[str]:
     yield f"    verdict   {finding.verdict.value}{outcome}, decided by {finding.decided_by}, under {finding.motion}"
     if finding.note:
         yield f"    note      {finding.note}"
+
+
+def _step(taken: "Taken") -> str:
+    return f"    {taken.step:<10}{taken.motion}, {taken.inputs}: {taken.told or _taken(taken)}"
+
+
+def _steps(taken: Iterable["Taken"]) -> Iterator[str]:
+    """Yield the steps of one kind under one motion as one line: of the best estimates, and between which others lie."""
+    from pipeline.tools.explain import BEST
+
+    for (motion, step), group in groupby(taken, key=lambda one: (one.motion, one.step)):
+        those = list(group)
+        first = next((one for one in those if one.inputs.startswith(BEST)), those[0])
+        others = len(those) - 1
+        if others:
+            span = f"{_number(min(one.low for one in those))} to {_number(max(one.high for one in those))}"
+            more = f"; with {others} other set{'s' * (others > 1)}: {span}"
+        yield f"    {step:<10}{motion}, {first.inputs}: {first.told or _taken(first)}{more if others else ''}"
 
 
 def _taken(taken: "Taken") -> str:
@@ -146,10 +193,13 @@ def _advice(advice: "Recommendation") -> Iterator[str]:
         yield f"    rejected  {rejected}"
 
 
-def _estimate(estimate: "Estimate") -> str:
+def _estimate(estimate: "Estimate", told: set[str] | None = None) -> str:
+    """Say a number with its range, origin and source; a source among those that were told is not told again."""
     span = f" ({_number(estimate.low)} to {_number(estimate.high)})" if estimate.low < estimate.high else ""
     why = f": {estimate.note}" if estimate.note else ""
-    source = f" [{estimate.source}]" if estimate.source else ""
+    source = f" [{estimate.source}]" if estimate.source and estimate.source not in (told or ()) else ""
+    if told is not None:
+        told.add(estimate.source)
     return f"{_number(estimate.value)} {estimate.unit}{span}, {estimate.origin.value}{why}{source}"
 
 

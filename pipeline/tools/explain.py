@@ -29,6 +29,9 @@ from pipeline.records import Estimate, Finding, Item, Likelihood, Numerics, Prog
 from pipeline.records.numerics import AUTO, CHART, SCAN
 from pipeline.store.decisions import InForce, decisions_in_force
 
+BEST = "best estimates"
+"""What inputs are called that are all by their best estimates."""
+
 
 @dataclass(frozen=True, slots=True)
 class Taken:
@@ -250,5 +253,5 @@ def _named(work: Work) -> list[str]:
             ]  # fmt: skip
             angle = float(work.angles[row])
             where = [] if isnan(angle) else [f"along {angle:.0f} degrees"]
-            names[row] = ", ".join([*(other or ["best estimates"]), *where])
+            names[row] = ", ".join([*(other or [BEST]), *where])
     return names

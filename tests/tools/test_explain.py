@@ -15,6 +15,7 @@ from pipeline.collection.database import open_database
 from pipeline.mitigate.saying import ANCHORED
 from pipeline.night.run import run
 from pipeline.operations.workspace import open_workspace
+from pipeline.quantities import figures
 from pipeline.records import DecisionKind
 from pipeline.settings import Settings, load_settings
 from pipeline.store.runs import list_runs, load_run
@@ -38,8 +39,8 @@ def museum(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     return settings
 
 
-def explained(museum: Settings, *words: str) -> Result:
-    options = Options(config=str(Path(museum.home) / "kouros.toml"), quiet=True, verbose=False, debug=False)
+def explained(museum: Settings, *words: str, verbose: bool = False) -> Result:
+    options = Options(config=str(Path(museum.home) / "kouros.toml"), quiet=True, verbose=verbose, debug=False)
     return CliRunner().invoke(command, ["--explain", *words], obj=options)
 
 
@@ -82,6 +83,23 @@ def test_the_words_name_every_step_and_no_control_character_passes(museum: Setti
         assert part in text, part
     assert "\x1b" not in text
     assert "height" in explained(museum, "3").stdout
+
+
+def test_what_came_of_it_stands_first_and_each_step_only_when_asked_for(museum: Settings) -> None:
+    """Steps of one kind under one motion are one line; with -v they are those of the JSON."""
+    short, whole = (explained(museum, "1", verbose=verbose).stdout.splitlines() for verbose in (False, True))
+    assert short[1].split()[0] == "verdict"
+    assert "  advice   " in "\n".join(short[: short.index(next(line for line in short if line.startswith("  class")))])
+    (one,) = json.loads(explained(museum, "1", "--json").stdout)
+    taken = [step for reasoning in one["reasonings"] for step in reasoning["taken"]]
+    kinds = {step["step"] for step in taken}
+    steps, told = ([line for line in lines if line[4:14].strip() in kinds] for lines in (whole, short))
+    assert len(steps) == len(taken)
+    assert len(told) == sum(len({(s["motion"], s["step"]) for s in r["taken"]}) for r in one["reasonings"])
+    # What is left out lies between the two numbers that are told.
+    first = [s for s in one["reasonings"][0]["taken"] if s["step"] == "bound" and s["motion"] == taken[0]["motion"]]
+    ends = min(s["low"] for s in first), max(s["high"] for s in first)
+    assert told[0].endswith(f"with {len(first) - 1} other sets: {figures(ends[0], 4)} to {figures(ends[1], 4)}")
 
 
 def test_an_unknown_object_is_refused_with_close_ones(museum: Settings) -> None:
