@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from pipeline.collection.display_words import says_shown
 from pipeline.records import Furniture, Support
-from pipeline.tables.held_rows import CASES, hangs_above, told_by, words_for
+from pipeline.tables.held_rows import CASES, hangs_above, stands_or_hangs, told_by, words_for
 from pipeline.tables.rows import UNPARTED, any_of
 
 _SEPARATOR = re.compile(r"\s*(?:[,;>|，、；➜→➔›»▸]|(?<!\bw)/)\s*|:\s+|\s+[-–—]\s+")
@@ -31,7 +31,8 @@ _NOTHING_BEHIND = re.compile(r"\s*[,;/>|]\s*[-–—.]*\s*$")
 """What stands for a case that a place has not: "Gartensaal / –"."""
 _OF_WALLS = re.compile(
     r"(?:Wand|wall|mur|muro|parete|pared|parede|muur|ściana|stěna|стена|τοίχος|duvar|vägg|væg|seinä|perete|zid)\s+"
-    r"(?:[nsewo]|nord|süd|ost|west|sud|est|ouest|ovest|norte|sur|este|oeste|noord|zuid|oost|\d{1,2}|[a-d])"
+    r"(?:[nsewo]|nord|süd|ost|west|sud|est|ouest|ovest|norte|sur|este|oeste|noord|zuid|oost|\d{1,2}|[a-d]"
+    r"|[^\W\d_]{1,5}\.(?:[\s-]?[^\W\d_]{1,5}\.)?)"
     r"|(?:north|south|east|west|left|right|back|end|[nsew])\.? wall|(?:Nord|Süd|Ost|West|Stirn|Längs|Rück)wand",
     re.IGNORECASE,
 )
@@ -44,6 +45,25 @@ _CODES = re.compile(
 """A place by its signs: the room, and a case with a shelf in it or a spot, G12.C03.S2 and G12.P01; display cases and
 open display as the British Museum writes them, G12/dc3 and G24/od."""
 _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
+_UPON = re.compile(
+    r"\s*(?:on|in|with|auf|mit|im|sur|avec|dans|su|con|sobre|en|em|com|op|met|på|med|na|ze?|s|se|σε|με|на|в|с)\s+\D+$",
+    re.IGNORECASE,
+)
+"""Behind a case what a thing is on or with there, and no second case: "on perspex mount"."""
+_SIDED = re.compile(
+    r"\b(?:left|right|first|second|third|north|south|east|west|upper|lower|link|recht|nord|süd|ost|west|gauche|droit|sud|est"
+    r"|ouest|sinistr|destr|ovest|izquierd|derech|norte|oeste|esquerd|direit|lew|praw|лев|прав|αριστερ|δεξι)",
+    re.IGNORECASE,
+)
+"""Words that tell one of several pedestals of a room from the others."""
+_EASTERN = "\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af"
+"""Signs of Chinese, Japanese and Korean."""
+_OF_ROOM_SIGNS = "室厅廳館馆堂殿院楼樓层層階층실관홀庫库一二三四五六七八九十"
+"""Those of them that end the name of a room or a storey, or count it."""
+_SIGNED_CASE = re.compile(r"\s*[A-Z]{1,4}[ .-]?\d{1,4}[a-z]?\s*\(([^()]+)\)")
+"""A case by its sign, and what kind of case it is: "CC2 (centre case)"."""
+_CUT_ELSEWISE = frozenset({"pal", "par", "sal", "gal", "mag", "col", "dep"})
+"""What is short for other words in places: a palace, a storey, a hall, a gallery, a store."""
 """A case by its sign alone, ahead of a shelf in it: CG-12."""
 
 _NONE = ("FS", "EXP", "WN", "WE", "WS", "WW")
@@ -56,7 +76,7 @@ _NO_CASE = (
 """No case is behind these words: "hors vitrine", as the Louvre says it."""
 
 ROOM = re.compile(
-    r"(?<!\w)(?:room|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
+    r"(?<!\w)(?:room|rm\.?|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
     r"|salon|sala|salone|galleria|galería|galeria|αιθ\.|zaal|\w*sal(?:en)?|\w*rummet|\w*rommet|\w*hallen|galleriet|terem|αίθουσα|salonu|зал|зала|сала|dvorana|soba|salė|zāle"
     r"|ruang|gedung|phòng|nhà|salla|დარბაზი|սրահ|ցուցասրահ|ห้อง\S*|القاعة|قاعة|غرفة|تالار|אולם|חדר|\w*展示室[a-z\d]{0,3})(?!\w)",
     re.IGNORECASE,
@@ -161,17 +181,26 @@ def parted(text: str) -> NamedPlace:
     if lies and names_room(lies[1]):
         return NamedPlace(lies[1], displayed=lies[2])
     text = _NOTHING_BEHIND.sub("", text)
-    ends = [found.span() for found in _SEPARATOR.finditer(text)]
+    ends = [found.span() for found in _separators(UNPARTED.search(text) is not None).finditer(text)]
     spans = list(zip((0, *(end for _, end in ends)), (*(start for start, _ in ends), len(text)), strict=True))
     if len(spans) > 1 and says_shown(text[: spans[0][1]]):
         # "On view - Room 1, case 3": that it is on view is no part of the room's name.
         return parted(text[spans[1][0] :])
     whole, numbered, inside = _patterns()
-    cases = [bool(whole.match(text[start:end])) for start, end in spans]
+    spans = _room_apart(text, spans[0]) + spans[1:]
+    pieces = [text[start:end] for start, end in spans]
+    if len(pieces) > 1 and _bare_plinth(pieces[0]):
+        return NamedPlace(text[spans[1][0] :], displayed=pieces[0])
+    # Of plinths without a number a room has several: what stands on one has it to itself.
+    cases = [_is_case(piece) and not _bare_plinth(piece) for piece in pieces]
     if any(cases):
         first = cases.index(True)
         if first:
-            return NamedPlace(text[: spans[first - 1][1]], text[spans[first][0] :])
+            # "Case 3, on a cushion": how a thing is held there is no part of its case, which others share.
+            behind = range(first + 1, len(pieces))
+            held = next((at for at in behind if not cases[at] and (_holds(pieces[at]) or _UPON.match(pieces[at]))), 0)
+            case = text[spans[first][0] : spans[held - 1][1] if held else len(text)]
+            return NamedPlace(text[: spans[first - 1][1]], case, text[spans[held][0] :] if held else "")
         if not all(cases):
             # "Case 3, Gallery 1": the other way round.
             room = cases.index(False)
@@ -186,7 +215,6 @@ def parted(text: str) -> NamedPlace:
         if named and numbered.match(named[2]):
             return NamedPlace(named[1].rstrip(), named[2])
         return NamedPlace(text, text if len(spans) > 1 or numbered.match(text) else "")
-    pieces = [text[start:end] for start, end in spans]
     held = next((at for at, one in enumerate(pieces) if at and (_tells(one) or _OF_WALLS.fullmatch(one))), 0)
     if held:
         return NamedPlace(text[: spans[held - 1][1]], displayed=text[spans[held][0] :])
@@ -203,6 +231,27 @@ def parted(text: str) -> NamedPlace:
     return NamedPlace(text, displayed=text if hangs_above(text) else "")
 
 
+def _room_apart(text: str, first: tuple[int, int]) -> list[tuple[int, int]]:
+    """Return the first piece of a place, in two where a room with its number is followed by a case or a spot in it."""
+    behind = _NUMBERED_ROOM.fullmatch(text, *first)
+    if behind is None or not (_is_case(behind[2]) or _holds(behind[2]) or _OF_WALLS.fullmatch(behind[2])):
+        return [first]
+    return [behind.span(1), behind.span(2)]
+
+
+def _is_case(piece: str) -> bool:
+    """Whether a piece of a place is a case, a pedestal or a shelf: "case 3", and "CC2 (centre case)"."""
+    whole = _patterns()[0]
+    signed = _SIGNED_CASE.match(piece)
+    return whole.match(piece) is not None or (signed is not None and whole.match(signed[1]) is not None)
+
+
+def _holds(piece: str) -> bool:
+    """Whether a piece of a place tells how a thing is held there, or that it is on the floor."""
+    told = told_by(piece)
+    return stands_or_hangs(piece) or told.mount is not None or told.hanging is not None
+
+
 def spot_of(case: str) -> str:
     """Return how a thing is held by a field for cases that names none; "" where it names one.
 
@@ -215,6 +264,8 @@ def spot_of(case: str) -> str:
     if case.strip() in _NONE:
         return f"case {case.strip()}"
     whole = _patterns()[0]
+    if _bare_plinth(case):
+        return case
     within = not case.strip() or any(map(whole.match, _SEPARATOR.split(case[:LONGEST])))
     told = told_by(case)
     open_ = told.furniture in _OF_ROOMS or told.support in (Support.HUNG, Support.SUSPENDED)
@@ -260,16 +311,55 @@ def _tells(piece: str) -> bool:
 
 
 @cache
+def _separators(signs: bool) -> re.Pattern[str]:
+    """Return what parts the pieces of a place; where it has Chinese, Japanese or Korean signs, a blank too."""
+    # "Gallery 12 Case 3 shelf 2": behind a number a case or a shelf begins a piece of its own.
+    behind = rf"(?:(?<=\d)|(?<=\d[a-z]))\s+(?={_counted()}(?!\w))"
+    spaced = rf"|(?<=\S)[\s\u3000]+(?=\S*[{_EASTERN}])" if signs else ""
+    return re.compile(rf"{_SEPARATOR.pattern}|{behind}{spaced}", re.IGNORECASE)
+
+
+@cache
+def _words() -> tuple[str, ...]:
+    """Return the words for cases, pedestals and shelves."""
+    kinds = (Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
+    return tuple(word for kind in kinds for word in words_for(kind) if "*" not in word)
+
+
+@lru_cache(maxsize=4096)
+def _bare_plinth(text: str) -> bool:
+    """Whether a text is of a pedestal, and tells it from no other: "Sockel", "on stone plinth", not "left plinth"."""
+    whole, numbered, _ = _patterns()
+    plinth = told_by(text).furniture is Furniture.PEDESTAL and whole.match(text) is not None
+    return plinth and numbered.match(text) is None and _SIDED.search(text) is None
+
+
+def _cut_short() -> str:
+    """Return what finds a word for a case, a pedestal or a shelf that a point cuts short: "vetr.", "gabl."."""
+    stems = {word[:long] for word in (*_words(), *CASES) if word.isalpha() for long in range(3, len(word))}
+    return rf"(?<!\w)(?:{'|'.join(sorted(filter(_parts_words, stems), key=len, reverse=True))})\."
+
+
+def _parts_words(stem: str) -> bool:
+    return UNPARTED.match(stem) is None and stem.casefold() not in _CUT_ELSEWISE
+
+
+@cache
+def _counted() -> str:
+    """Return what finds a case, a pedestal or a shelf with its number."""
+    numbered = f"(?:{any_of([*_words(), *CASES]).pattern}|{_cut_short()})"
+    # 3号柜, 第2ケース: the number comes first.
+    signs = any_of([*filter(UNPARTED.match, [*_words(), *CASES]), "柜", "櫃"]).pattern
+    ahead = rf"[第제]?[\d一二三四五六七八九十]{{1,4}}\s?[号號番번]?\s?(?:{signs})"
+    return rf"(?:{_NO_CASE}{numbered}\.?\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}|{ahead})"
+
+
+@cache
 def _patterns() -> tuple[re.Pattern[str], re.Pattern[str], re.Pattern[str]]:
     """Return what is wholly a case, what is so with its number, and where one with a number begins."""
-    kinds = (Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF)
-    plain = [word for kind in kinds for word in words_for(kind) if "*" not in word]
-    word, numbered = f"(?:{any_of(plain).pattern})", f"(?:{any_of([*plain, *CASES]).pattern})"
-    # 3号柜, 第2ケース: the number comes first.
-    signs = any_of([*filter(UNPARTED.match, [*plain, *CASES]), "柜", "櫃"]).pattern
-    ahead = rf"[第제]?[\d一二三四五六七八九十]{{1,4}}\s?[号號番번]?\s?(?:{signs})"
-    counted = rf"(?:{_NO_CASE}{numbered}\.?\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}|{ahead})"
-    before = r"\s*(?:[^\W\d_]+[\s-]+){0,2}"
+    word, counted = f"(?:{any_of(_words()).pattern})", _counted()
+    # 独立ケース1: no blank parts a case from the words ahead of it.
+    before = rf"\s*(?:[^\W\d_]+[\s-]+){{0,2}}(?:(?![{_OF_ROOM_SIGNS}])[{_EASTERN}]){{0,4}}?"
     return (
         re.compile(rf"{_NO_CASE}{before}(?:{counted}|{word}|case)\s*$", re.IGNORECASE),
         re.compile(rf"{_NO_CASE}{before}{counted}\s*$", re.IGNORECASE),

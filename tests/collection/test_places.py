@@ -23,7 +23,11 @@ from pipeline.records import Furniture, Item, Origin, Support
      ("Gallery 6, left case", "Gallery 6", "left case"), ("Großer Saal, Vitrine III", "Großer Saal", "Vitrine III"),
      ("Salle 3 > Vitrine 12 > étagère 2", "Salle 3", "Vitrine 12 > étagère 2"), ("第2展厅展柜3", "第2展厅", "展柜3"),
      ("British Galleries, Room 58, Case 3", "British Galleries, Room 58", "Case 3"),
-     ("Grosvenor Gallery: plinth", "Grosvenor Gallery", "plinth"), ("Case 3, Gallery 1", "Gallery 1", "Case 3"),
+     ("Case 3, Gallery 1", "Gallery 1", "Case 3"), ("Salle 3, vit. 2, tabl. 4", "Salle 3", "vit. 2, tabl. 4"),
+     ("P.T. sala 2, vetr. B, ripiano 3", "P.T. sala 2", "vetr. B, ripiano 3"), ("sala 4, gabl. 2", "sala 4", "gabl. 2"),
+     ("Gallery 12 Case 3 Shelf 2", "Gallery 12", "Case 3 Shelf 2"), ("magazyn, regał 7", "magazyn", "regał 7"),
+     ("2F常設展示室 ケース3 中段", "2F常設展示室", "ケース3 中段"), ("收蔵庫A 棚3-2", "收蔵庫A", "棚3-2"),
+     ("常設展示室 独立ケース1", "常設展示室", "独立ケース1"), ("1층 서화실 벽부장", "1층 서화실", "벽부장"),
      ("Gallery 207 - Display case A", "Gallery 207", "Display case A"), ("Vitrine 3", "Vitrine 3", "Vitrine 3"),
      ("Fossil room Case 2", "Fossil room", "Case 2"), ("Wing B Case 4", "Wing B", "Case 4"),
      ("Rittersaal Vitrine 4", "Rittersaal", "Vitrine 4"), ("Sala romana vetrina 3", "Sala romana", "vetrina 3"),
@@ -57,7 +61,11 @@ def test_a_room_alone(place: str) -> None:
      ("On display (G24/od)", "G24", "od"), ("Sculpture, room 21, case FS", "Sculpture, room 21", "case FS"),
      ("Salle 348 - Salle des Verres, Hors vitrine", "Salle 348 - Salle des Verres", "Hors vitrine"),
      ("Room 5, not in a case", "Room 5", "not in a case"), ("Library floor", "Library", "floor"),
-     ("Level 4, Passports, open display", "Level 4, Passports", "open display")],
+     ("Level 4, Passports, open display", "Level 4, Passports", "open display"),
+     # Of plinths without a number a room has several, which share nothing.
+     ("Grosvenor Gallery: plinth", "Grosvenor Gallery", "plinth"), ("Zaal 1.02, sokkel", "Zaal 1.02", "sokkel"),
+     ("sala 6, ściana płn.", "sala 6", "ściana płn."), ("1Fロビー 壁面", "1Fロビー", "壁面"),
+     ("Udst., rum 3, fritstående", "Udst., rum 3", "fritstående")],
 )  # fmt: skip
 def test_a_room_and_how_a_thing_is_held_there(place: str, room: str, displayed: str) -> None:
     assert parted(place) == (room, "", displayed)

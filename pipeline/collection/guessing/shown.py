@@ -16,6 +16,14 @@ from pipeline.collection.places import case_in, parted
 from pipeline.collection.record import CHOICES
 from pipeline.tables.held_rows import HeldAs, stands_or_hangs, told_by
 
+_SIDES = frozenset(
+    {
+        *("n", "e", "s", "w", "o", "ne", "nw", "se", "sw", "north", "east", "south", "west", "left", "right"),
+        *("center", "centre", "middle", "mitte", "nord", "süd", "ost", "sud", "est", "ouest", "ovest", "norte", "sur"),
+        *("este", "oeste", "centro"),
+    }
+)
+"""Sides of a room, and its middle."""
 _REMOVED = frozenset(
     {
         *("disposal", "disposed", "deaccession", "deaccessioned", "deaccessioning", "aussonderung", "abgang"),
@@ -246,7 +254,8 @@ def _holds_ways(column: Column) -> bool:
 
 def _tells_ways(column: Column, share: float) -> bool:
     """Whether so many of a column's different texts, and `_FEWEST` at least, tell how a thing is held."""
-    some = column.distinct[:ASKED]
+    # "N", "CENTER" and "CEILING": a side of the room or its middle tells nothing, and speaks against nothing.
+    some = [text for text in column.distinct[:ASKED] if text.casefold() not in _SIDES]
     ways = sum(told_by(text) != HeldAs() or bool(case_in(text)) for text in some)
     return ways >= max(_FEWEST, share * len(some))
 
