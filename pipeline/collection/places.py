@@ -197,8 +197,8 @@ def parted(text: str) -> NamedPlace:
         first = cases.index(True)
         if first:
             # "Case 3, on a cushion": how a thing is held there is no part of its case, which others share.
-            behind = range(first + 1, len(pieces))
-            held = next((at for at in behind if not cases[at] and (_holds(pieces[at]) or _UPON.match(pieces[at]))), 0)
+            further = range(first + 1, len(pieces))
+            held = next((at for at in further if not cases[at] and (_holds(pieces[at]) or _UPON.match(pieces[at]))), 0)
             case = text[spans[first][0] : spans[held - 1][1] if held else len(text)]
             return NamedPlace(text[: spans[first - 1][1]], case, text[spans[held][0] :] if held else "")
         if not all(cases):
