@@ -9,12 +9,12 @@ from pipeline.records import Furniture, Support
 from pipeline.tables.held_rows import CASES, hangs_above, stands_or_hangs, told_by, words_for
 from pipeline.tables.rows import UNPARTED, any_of
 
-_SEPARATOR = re.compile(r"\s*(?:[,;>|，、；➜→➔›»▸]|(?<!\bw)/)\s*|:\s+|\s+[-–—]\s+")
+_SEPARATOR = re.compile(r"\s*(?:[,;>|，、；➜→➔›»▸]|(?<!\bw)(?:(?<!\b[A-Za-z\d])/|/(?![A-Za-z]\b)))\s*|:\s+|\s+[-–—]\s+")
 LONGEST = 300
 """Characters beyond which a text names no place that could be parted."""
 
 _ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
-_SIGN = r"(?:[a-z]{0,3}\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
+_SIGN = r"(?:(?!\d+\s?(?:mm|cm|m|in|ft)\b)[a-z]{0,3}\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS, MW4."""
 
 _SIDE = (
@@ -33,6 +33,7 @@ _OF_WALLS = re.compile(
     r"(?:Wand|wall|mur|muro|parete|pared|parede|muur|ściana|stěna|стена|τοίχος|duvar|vägg|væg|seinä|perete|zid)\s+"
     r"(?:[nsewo]|nord|süd|ost|west|sud|est|ouest|ovest|norte|sur|este|oeste|noord|zuid|oost|\d{1,2}|[a-d]"
     r"|[^\W\d_]{1,5}\.(?:[\s-]?[^\W\d_]{1,5}\.)?)"
+    r"|(?:panel|panneau|pannello|painel|paneel|Stellwand|display screen|baffle|partition)\s+(?:[a-z]|\d{1,3}[a-z]?)"
     r"|(?:north|south|east|west|left|right|back|end|[nsew])\.? wall|(?:Nord|Süd|Ost|West|Stirn|Längs|Rück)wand",
     re.IGNORECASE,
 )
@@ -45,6 +46,10 @@ _CODES = re.compile(
 """A place by its signs: the room, and a case with a shelf in it or a spot, G12.C03.S2 and G12.P01; display cases and
 open display as the British Museum writes them, G12/dc3 and G24/od."""
 _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
+_BESIDE = re.compile(
+    rf"{_SEPARATOR.pattern}|\s*\+\s*|\s+(?:with|and|mit|und|avec|et|con|com|met|med|z)\s+", re.IGNORECASE
+)
+"""What parts a case from what else is told in a text on how a thing is displayed: "plinth 3 + acrylic bonnet"."""
 _UPON = re.compile(
     r"\s*(?:on|in|with|auf|mit|im|sur|avec|dans|su|con|sobre|en|em|com|op|met|på|med|na|ze?|s|se|σε|με|на|в|с)\s+\D+$",
     re.IGNORECASE,
@@ -74,6 +79,15 @@ _NO_CASE = (
     r"|sin|fora d[ae]|sem|buiten(?: de)?|zonder|utanför|uden|poza|bez|mimo|вне|без|εκτός)\b)"
 )
 """No case is behind these words: "hors vitrine", as the Louvre says it."""
+
+SIDES_OF_ROOMS = frozenset(
+    {
+        *("n", "e", "s", "w", "o", "ne", "nw", "se", "sw", "north", "east", "south", "west", "left", "right"),
+        *("center", "centre", "middle", "mitte", "nord", "süd", "ost", "sud", "est", "ouest", "ovest", "norte", "sur"),
+        *("este", "oeste", "centro", "centre of room", "center of room", "im raum", "raummitte"),
+    }
+)
+"""Sides of a room, and its middle."""
 
 ROOM = re.compile(
     r"(?<!\w)(?:room|rm\.?|gallery|hall|court|atrium|lobby|foyer|wing|pavilion|\w*saal|\w*raum|galerie|\w*kabinett|halle|salle"
@@ -171,14 +185,18 @@ def parted(text: str) -> NamedPlace:
         return NamedPlace(coded[1] or coded["room"], case, spot)
     enclosed = _ENCLOSED.fullmatch(text)
     if enclosed and _tells(enclosed[2]):
-        return NamedPlace(enclosed[1], displayed=enclosed[2])
+        outer = parted(enclosed[1])
+        return outer._replace(displayed=", ".join(filter(None, (outer.displayed, enclosed[2]))))
+    if enclosed and _patterns()[1].match(enclosed[2]):
+        return NamedPlace(enclosed[1], enclosed[2])
     ahead = _CASE_FIRST.fullmatch(text)
     if ahead and re.fullmatch(_SIDE, ahead[1], re.IGNORECASE):
         return NamedPlace(ahead[2], displayed=ahead[1])
     if ahead and _patterns()[0].fullmatch(ahead[1]):
         return NamedPlace(ahead[2], ahead[1])
     lies = _SIDE_OF.fullmatch(text)
-    if lies and names_room(lies[1]):
+    walled = _NUMBERED_ROOM.fullmatch(text)
+    if lies and names_room(lies[1]) and not (walled and _is_spot(walled[2])):
         return NamedPlace(lies[1], displayed=lies[2])
     text = _NOTHING_BEHIND.sub("", text)
     ends = [found.span() for found in _separators(UNPARTED.search(text) is not None).finditer(text)]
@@ -231,10 +249,15 @@ def parted(text: str) -> NamedPlace:
     return NamedPlace(text, displayed=text if hangs_above(text) else "")
 
 
+def _is_spot(piece: str) -> bool:
+    """Whether a piece of a place tells where in a room a thing is: one of its walls, a panel, or its middle."""
+    return _OF_WALLS.fullmatch(piece) is not None or piece.strip().casefold() in SIDES_OF_ROOMS
+
+
 def _room_apart(text: str, first: tuple[int, int]) -> list[tuple[int, int]]:
     """Return the first piece of a place, in two where a room with its number is followed by a case or a spot in it."""
     behind = _NUMBERED_ROOM.fullmatch(text, *first)
-    if behind is None or not (_is_case(behind[2]) or _holds(behind[2]) or _OF_WALLS.fullmatch(behind[2])):
+    if behind is None or not (_is_case(behind[2]) or _holds(behind[2]) or _is_spot(behind[2])):
         return [first]
     return [behind.span(1), behind.span(2)]
 
@@ -252,7 +275,7 @@ def _holds(piece: str) -> bool:
     return stands_or_hangs(piece) or told.mount is not None or told.hanging is not None
 
 
-def spot_of(case: str) -> str:
+def spot_of(case: str, furniture: object = None) -> str:
     """Return how a thing is held by a field for cases that names none; "" where it names one.
 
     Parameters
@@ -260,7 +283,11 @@ def spot_of(case: str) -> str:
     case : str
         As the museum writes it: "wall", "floor"; free-standing (FS), exposed (EXP) and walls (WN to WW) as the
         Victoria and Albert Museum does.
+    furniture : object, optional
+        What else of the record says that it stands on or hangs from: of W05, that it is a wall.
     """
+    if furniture in _OF_ROOMS and _CODE.fullmatch(case.strip()):
+        return case
     if case.strip() in _NONE:
         return f"case {case.strip()}"
     whole = _patterns()[0]
@@ -282,7 +309,7 @@ def case_in(text: str) -> str:
         As the museum writes it: "showcase 4", "Vitrine 12, on a cushion".
     """
     numbered = _patterns()[1]
-    pieces = [piece.strip() for piece in _SEPARATOR.split(text[:LONGEST])]
+    pieces = [piece.strip() for piece in _BESIDE.split(text[:LONGEST])]
     at = next((at for at, piece in enumerate(pieces) if numbered.match(piece)), None)
     if at is None:
         return ""
