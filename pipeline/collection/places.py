@@ -205,7 +205,8 @@ def parted(text: str) -> NamedPlace:
         # "On view - Room 1, case 3": that it is on view is no part of the room's name.
         return parted(text[spans[1][0] :])
     whole, numbered, inside = _patterns()
-    spans = _room_apart(text, spans[0]) + spans[1:]
+    room = _room_apart(text, spans[0])
+    spans = room + spans[1:]
     pieces = [text[start:end] for start, end in spans]
     if len(pieces) > 1 and _bare_plinth(pieces[0]):
         return NamedPlace(text[spans[1][0] :], displayed=pieces[0])
@@ -221,8 +222,8 @@ def parted(text: str) -> NamedPlace:
             return NamedPlace(text[: spans[first - 1][1]], case, text[spans[held][0] :] if held else "")
         if not all(cases):
             # "Case 3, Gallery 1": the other way round.
-            room = cases.index(False)
-            return NamedPlace(text[spans[room][0] :], text[: spans[room - 1][1]])
+            other = cases.index(False)
+            return NamedPlace(text[spans[other][0] :], text[: spans[other - 1][1]])
         behind = _NUMBERED_ROOM.fullmatch(text) if len(spans) == 1 else None
         if behind and whole.match(behind[2]):
             return NamedPlace(behind[1], behind[2])
@@ -233,7 +234,9 @@ def parted(text: str) -> NamedPlace:
         if named and numbered.match(named[2]):
             return NamedPlace(named[1].rstrip(), named[2])
         return NamedPlace(text, text if len(spans) > 1 or numbered.match(text) else "")
-    held = next((at for at, one in enumerate(pieces) if at and (_tells(one) or _OF_WALLS.fullmatch(one))), 0)
+    held = next(
+        (at for at, one in enumerate(pieces) if at and (_tells(one) or _OF_WALLS.fullmatch(one) or at < len(room))), 0
+    )
     if held:
         return NamedPlace(text[: spans[held - 1][1]], displayed=text[spans[held][0] :])
     behind = _NUMBERED_ROOM.fullmatch(text)
