@@ -2,8 +2,8 @@
 
 data/collections/by_place: three lists are of real rows or real places, the others written as registrars, conservators
 and designers write them (README there); expected.csv was written before any row was read, and whole lists were put
-into `learn` or `held` by lot. Of `learn` 53 of 79 rows differed in anything at first sight, of `held` 41 of 75 when `learn`
-had been mended; now 22 of 154 do, in what MISSED counts.
+into `learn` or `held` by lot. Of `learn` 53 of 79 rows differed in anything at first sight, of `held` 41 of 75 when
+`learn` had been mended; now 22 of 154 do, in what MISSED counts.
 """
 
 import csv
