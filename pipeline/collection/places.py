@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from pipeline.collection.display_words import says_shown
 from pipeline.records import Furniture, Support
-from pipeline.tables.held_rows import CASES, hangs_above, stands_or_hangs, told_by, words_for
+from pipeline.tables.held_rows import CASES, hangs_above, in_no_case, stands_or_hangs, told_by, words_for
 from pipeline.tables.rows import UNPARTED, any_of
 
 _SEPARATOR = re.compile(r"\s*(?:[,;>|，、；➜→➔›»▸]|(?<!\bw)(?:(?<!\b[A-Za-z\d])/|/(?![A-Za-z]\b)))\s*|:\s+|\s+[-–—]\s+")
@@ -266,10 +266,20 @@ def _room_apart(text: str, first: tuple[int, int]) -> list[tuple[int, int]]:
 
 
 def _is_case(piece: str) -> bool:
-    """Whether a piece of a place is a case, a pedestal or a shelf: "case 3", and "CC2 (centre case)"."""
+    """Whether a piece of a place is a case, a pedestal or a shelf: "CC2 (centre case)", "case F upper shelf"."""
     whole = _patterns()[0]
-    signed = _SIGNED_CASE.match(piece)
-    return whole.match(piece) is not None or (signed is not None and whole.match(signed[1]) is not None)
+    signed, shelved = _SIGNED_CASE.match(piece), _shelved().match(piece)
+    return (
+        whole.match(piece) is not None
+        or (signed is not None and whole.match(signed[1]) is not None)
+        or (shelved is not None and whole.match(shelved[1]) is not None)
+    )
+
+
+@cache
+def _shelved() -> re.Pattern[str]:
+    """Return what finds a case with its number, and then what is a shelf in it."""
+    return re.compile(rf"\s*(?:[^\W\d_]+[\s-]+){{0,2}}{_counted()}\s+(\S.*)", re.IGNORECASE)
 
 
 def _holds(piece: str) -> bool:
@@ -294,7 +304,7 @@ def spot_of(case: str, furniture: object = None) -> str:
     if case.strip() in _NONE:
         return f"case {case.strip()}"
     whole = _patterns()[0]
-    if _bare_plinth(case):
+    if _bare_plinth(case) or in_no_case(case):
         return case
     within = not case.strip() or any(map(whole.match, _SEPARATOR.split(case[:LONGEST])))
     told = told_by(case)
@@ -381,7 +391,9 @@ def _counted() -> str:
     # 3号柜, 第2ケース: the number comes first.
     signs = any_of([*filter(UNPARTED.match, [*_words(), *CASES]), "柜", "櫃"]).pattern
     ahead = rf"[第제]?[\d一二三四五六七八九十]{{1,4}}\s?[号號番번]?\s?(?:{signs})"
-    return rf"(?:{_NO_CASE}{numbered}\.?\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}|{ahead})"
+    # "3. vitrin", "2. polc": the number comes first, as an ordinal.
+    ordinal = rf"(?<!\w)\d{{1,3}}\.\s*{numbered}(?!\w)"
+    return rf"(?:{_NO_CASE}{numbered}\.?\s*(?:no\.?|nr\.?|n[.°º]|#|№)?\s*{_SIGN}|{ahead}|{ordinal})"
 
 
 @cache
