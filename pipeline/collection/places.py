@@ -7,6 +7,7 @@ from typing import NamedTuple
 from pipeline.collection.display_words import says_shown
 from pipeline.records import Furniture, Support
 from pipeline.tables.held_rows import CASES, hangs_above, in_no_case, stands_or_hangs, told_by, words_for
+from pipeline.tables.place_rows import place_words
 from pipeline.tables.rows import UNPARTED, any_of
 
 _SEPARATOR = re.compile(r"\s*(?:[,;>|，、；➜→➔›»▸]|(?<!\bw)(?:(?<!\b[A-Za-z\d])/|/(?![A-Za-z]\b)))\s*|:\s+|\s+[-–—]\s+")
@@ -17,9 +18,7 @@ _ENCLOSED = re.compile(r"(.*\S)\s*\(([^()]+)\)\s*")
 _SIGN = r"(?:(?!\d+\s?(?:mm|cm|m|in|ft)\b)[a-z]{0,3}\d[\w.-]{0,5}|[a-z]|[ivx]{1,4}|(?-i:[A-Z]{2}))"
 """What tells one case from the next: 3, 12b, A, IV, FS, MW4."""
 
-_SIDE = (
-    r"(?:floor|wall|ceiling|Boden|Wand|Decke|sol|mur|plafond|pavimento|parete|soffitto|suelo|pared|techo|vloer|muur)"
-)
+_SIDE = rf"(?:{'|'.join(place_words('surface'))})"
 _SIDE_OF = re.compile(
     r"(\w(?:[\w'.]| (?!(?:on|the|of|by|to|near|against|an|am|der|die|das|auf|au|du|sur|la|le|al|alla|sulla|del|della|en"
     r"|el|na|no|de|aan|op|north|south|east|west|left|right|back|end)\b))*)"
@@ -80,13 +79,7 @@ _NO_CASE = (
 )
 """No case is behind these words: "hors vitrine", as the Louvre says it."""
 
-SIDES_OF_ROOMS = frozenset(
-    {
-        *("n", "e", "s", "w", "o", "ne", "nw", "se", "sw", "north", "east", "south", "west", "left", "right"),
-        *("center", "centre", "middle", "mitte", "nord", "süd", "ost", "sud", "est", "ouest", "ovest", "norte", "sur"),
-        *("este", "oeste", "centro", "centre of room", "center of room", "im raum", "raummitte"),
-    }
-)
+SIDES_OF_ROOMS = frozenset(map(str.casefold, place_words("side")))
 """Sides of a room, and its middle."""
 
 ROOM = re.compile(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import cache
 
 import tomlkit
 
@@ -11,23 +12,9 @@ from pipeline.collection.guessing.columns import Column, untaken
 from pipeline.collection.guessing.names import plain
 from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.records import Furniture
+from pipeline.tables.place_rows import place_words
 
-_KINDS = {
-    **dict.fromkeys(("c", "sc", "dc", "v", "vit", "t", "tc", "wc", "fc"), Furniture.SHOWCASE),
-    **dict.fromkeys(("p", "pl"), Furniture.PEDESTAL),
-    **dict.fromkeys(("w", "wl"), Furniture.WALL),
-    **dict.fromkeys(("f", "fl", "fs", "od"), Furniture.FLOOR),
-    **dict.fromkeys(("h", "hg", "s", "ceil"), Furniture.RAIL),
-}
-"""Letters ahead of the number -> what a designer means by them, where one list has several kinds (judgement)."""
 _SIGN = re.compile(r"([A-Za-z]{1,4})[ .-]?\d{1,3}[a-z]?(?:[\s./-]+[A-Za-z]{0,3}\d{0,3})?")
-_SECTIONS = frozenset(
-    {
-        *("section", "zone", "area", "theme", "chapter", "gallery", "room", "bereich", "kapitel", "abschnitt", "thema"),
-        *("sezione", "seccion", "secao", "afdeling", "sectie", "avdelning", "sekcja", "oddil", "раздел", "ενοτητα"),
-    }
-)
-"""Words, folded, of a column of the parts of an exhibition."""
 
 
 def spots_by_sign(columns: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> tomlkit.items.Table | None:
@@ -51,14 +38,14 @@ def spots_by_sign(columns: Sequence[Column], found: dict[str, Column], told: Gue
     if where is None or {"case", "furniture"} & found.keys() or {"gallery", "case", "furniture"} & told.choices.keys():
         return None
     signs = {text: _SIGN.fullmatch(text.strip()) for text in where.distinct}
-    kinds = {text: _KINDS.get(sign[1].casefold()) for text, sign in signs.items() if sign is not None}
+    kinds = {text: _kinds().get(sign[1].casefold()) for text, sign in signs.items() if sign is not None}
     meant = {kind for kind in kinds.values() if kind is not None}
     # Rooms are called A1 and B2, too: cases beside things in the open are told by the letters of both.
     if len(kinds) < len(signs) or None in kinds.values() or Furniture.SHOWCASE not in meant or len(meant) < 2:
         return None
     del found["gallery"]
     found["case"] = where
-    named = (one for one in untaken(columns, found.values()) if _SECTIONS.intersection(plain(one.name).split()))
+    named = (one for one in untaken(columns, found.values()) if _sections().intersection(plain(one.name).split()))
     section = next((one for one in named if one.filled and len(one.distinct) < len(one.filled)), None)
     if section is not None:
         found["gallery"] = section
@@ -74,3 +61,15 @@ def spots_by_sign(columns: Sequence[Column], found: dict[str, Column], told: Gue
         f"gallery={where.name} takes it for the rooms"
     )
     return entry
+
+
+@cache
+def _kinds() -> dict[str, Furniture]:
+    """Return what a designer means by the letters ahead of a number, where one list has several kinds."""
+    return {letters: kind for kind in Furniture for letters in place_words(kind.value)}
+
+
+@cache
+def _sections() -> frozenset[str]:
+    """Return the words of the head of a column of the parts of an exhibition."""
+    return frozenset(map(plain, place_words("section")))
