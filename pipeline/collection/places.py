@@ -64,6 +64,7 @@ _EASTERN = "\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af"
 """Signs of Chinese, Japanese and Korean."""
 _OF_ROOM_SIGNS = "室厅廳館馆堂殿院楼樓层層階층실관홀庫库一二三四五六七八九十"
 """Those of them that end the name of a room or a storey, or count it."""
+_SIGN_BEHIND = re.compile(rf"\d\s+{_CODE.pattern}[a-z]?$")
 _SIGNED_CASE = re.compile(r"\s*[A-Z]{1,4}[ .-]?\d{1,4}[a-z]?\s*\(([^()]+)\)")
 """A case by its sign, and what kind of case it is: "CC2 (centre case)"."""
 _CUT_ELSEWISE = frozenset({"pal", "par", "sal", "gal", "mag", "col", "dep"})
@@ -79,7 +80,8 @@ _NO_CASE = (
 )
 """No case is behind these words: "hors vitrine", as the Louvre says it."""
 
-SIDES_OF_ROOMS = frozenset(map(str.casefold, place_words("side")))
+_MIDDLE = frozenset(map(str.casefold, place_words("middle")))
+SIDES_OF_ROOMS = _MIDDLE.union(map(str.casefold, place_words("side")))
 """Sides of a room, and its middle."""
 
 ROOM = re.compile(
@@ -177,7 +179,9 @@ def parted(text: str) -> NamedPlace:
         case, spot = coded["case"] or coded["dc"] or "", coded["spot"] or coded["od"] or ""
         return NamedPlace(coded[1] or coded["room"], case, spot)
     enclosed = _ENCLOSED.fullmatch(text)
-    if enclosed and _tells(enclosed[2]):
+    # "Rm 4 CC2 (centre case)": what kind of case the one of that sign is.
+    signed = enclosed and _SIGN_BEHIND.search(enclosed[1]) and _is_case(enclosed[2])
+    if enclosed and not signed and _tells(enclosed[2]):
         outer = parted(enclosed[1])
         return outer._replace(displayed=", ".join(filter(None, (outer.displayed, enclosed[2]))))
     if enclosed and _patterns()[1].match(enclosed[2]):
@@ -247,7 +251,8 @@ def parted(text: str) -> NamedPlace:
 
 def _is_spot(piece: str) -> bool:
     """Whether a piece of a place tells where in a room a thing is: one of its walls, a panel, or its middle."""
-    return _OF_WALLS.fullmatch(piece) is not None or piece.strip().casefold() in SIDES_OF_ROOMS
+    # "Gallery 5 North" may be a room beside "Gallery 5 South".
+    return _OF_WALLS.fullmatch(piece) is not None or piece.strip().casefold() in _MIDDLE
 
 
 def _room_apart(text: str, first: tuple[int, int]) -> list[tuple[int, int]]:
@@ -264,6 +269,7 @@ def _is_case(piece: str) -> bool:
     signed, shelved = _SIGNED_CASE.match(piece), _shelved().match(piece)
     return (
         whole.match(piece) is not None
+        or (piece.endswith(")") and whole.match(piece.partition("(")[0]) is not None)
         or (signed is not None and whole.match(signed[1]) is not None)
         or (shelved is not None and whole.match(shelved[1]) is not None)
     )
@@ -340,7 +346,8 @@ def _tells(piece: str) -> bool:
     if piece.casefold() == "loft":
         return False  # a room below an English roof; in Danish, where it is a ceiling, things hang "i loftet"
     told = told_by(piece)
-    return told.support is not None or told.furniture is not None
+    # "The Plinth Room" is one.
+    return told.support is not None or (told.furniture is not None and ROOM.search(piece) is None)
 
 
 @cache
@@ -363,6 +370,7 @@ def _words() -> tuple[str, ...]:
 def _bare_plinth(text: str) -> bool:
     """Whether a text is of a pedestal, and tells it from no other: "Sockel", "on stone plinth", not "left plinth"."""
     whole, numbered, _ = _patterns()
+    text = text.partition("(")[0] if text.endswith(")") else text  # "on stone plinth (90 cm)"
     plinth = told_by(text).furniture is Furniture.PEDESTAL and whole.match(text) is not None
     return plinth and numbered.match(text) is None and _SIDED.search(text) is None
 
