@@ -184,24 +184,24 @@ def parted(text: str) -> NamedPlace:
     if enclosed and not signed and _tells(enclosed[2]):
         outer = parted(enclosed[1])
         return outer._replace(displayed=", ".join(filter(None, (outer.displayed, enclosed[2]))))
-    if enclosed and _patterns()[1].match(enclosed[2]):
+    if enclosed and _patterns("." in text)[1].match(enclosed[2]):
         return NamedPlace(enclosed[1], enclosed[2])
     ahead = _CASE_FIRST.fullmatch(text)
     if ahead and re.fullmatch(_SIDE, ahead[1], re.IGNORECASE):
         return NamedPlace(ahead[2], displayed=ahead[1])
-    if ahead and _patterns()[0].fullmatch(ahead[1]):
+    if ahead and _patterns("." in text)[0].fullmatch(ahead[1]):
         return NamedPlace(ahead[2], ahead[1])
     lies = _SIDE_OF.fullmatch(text)
     walled = _NUMBERED_ROOM.fullmatch(text)
     if lies and names_room(lies[1]) and not (walled and _is_spot(walled[2])):
         return NamedPlace(lies[1], displayed=lies[2])
     text = _NOTHING_BEHIND.sub("", text)
-    ends = [found.span() for found in _separators(UNPARTED.search(text) is not None).finditer(text)]
+    ends = [found.span() for found in _separators(UNPARTED.search(text) is not None, "." in text).finditer(text)]
     spans = list(zip((0, *(end for _, end in ends)), (*(start for start, _ in ends), len(text)), strict=True))
     if len(spans) > 1 and says_shown(text[: spans[0][1]]):
         # "On view - Room 1, case 3": that it is on view is no part of the room's name.
         return parted(text[spans[1][0] :])
-    whole, numbered, inside = _patterns()
+    whole, numbered, inside = _patterns("." in text)
     room = _room_apart(text, spans[0])
     spans = room + spans[1:]
     pieces = [text[start:end] for start, end in spans]
@@ -265,8 +265,8 @@ def _room_apart(text: str, first: tuple[int, int]) -> list[tuple[int, int]]:
 
 def _is_case(piece: str) -> bool:
     """Whether a piece of a place is a case, a pedestal or a shelf: "CC2 (centre case)", "case F upper shelf"."""
-    whole = _patterns()[0]
-    signed, shelved = _SIGNED_CASE.match(piece), _shelved().match(piece)
+    whole = _patterns("." in piece)[0]
+    signed, shelved = _SIGNED_CASE.match(piece), _shelved("." in piece).match(piece)
     return (
         whole.match(piece) is not None
         or (piece.endswith(")") and whole.match(piece.partition("(")[0]) is not None)
@@ -276,9 +276,9 @@ def _is_case(piece: str) -> bool:
 
 
 @cache
-def _shelved() -> re.Pattern[str]:
+def _shelved(points: bool) -> re.Pattern[str]:
     """Return what finds a case with its number, and then what is a shelf in it."""
-    return re.compile(rf"\s*(?:[^\W\d_]+[\s-]+){{0,2}}{_counted()}\s+(\S.*)", re.IGNORECASE)
+    return re.compile(rf"\s*(?:[^\W\d_]+[\s-]+){{0,2}}{_counted(points)}\s+(\S.*)", re.IGNORECASE)
 
 
 def _holds(piece: str) -> bool:
@@ -302,7 +302,7 @@ def spot_of(case: str, furniture: object = None) -> str:
         return case
     if case.strip() in _NONE:
         return f"case {case.strip()}"
-    whole = _patterns()[0]
+    whole = _patterns("." in case)[0]
     if _bare_plinth(case) or in_no_case(case):
         return case
     within = not case.strip() or any(map(whole.match, _SEPARATOR.split(case[:LONGEST])))
@@ -320,7 +320,7 @@ def case_in(text: str) -> str:
     text : str
         As the museum writes it: "showcase 4", "Vitrine 12, on a cushion".
     """
-    numbered = _patterns()[1]
+    numbered = _patterns("." in text)[1]
     pieces = [piece.strip() for piece in _BESIDE.split(text[:LONGEST])]
     at = next((at for at, piece in enumerate(pieces) if numbered.match(piece)), None)
     if at is None:
@@ -339,7 +339,7 @@ def beside_case(text: str) -> str:
         As the museum writes it.
     """
     pieces = _SEPARATOR.split(text[:LONGEST])
-    return ", ".join(piece for piece in pieces if not _patterns()[0].match(piece))
+    return ", ".join(piece for piece in pieces if not _patterns("." in piece)[0].match(piece))
 
 
 def _tells(piece: str) -> bool:
@@ -351,10 +351,10 @@ def _tells(piece: str) -> bool:
 
 
 @cache
-def _separators(signs: bool) -> re.Pattern[str]:
+def _separators(signs: bool, points: bool) -> re.Pattern[str]:
     """Return what parts the pieces of a place; where it has Chinese, Japanese or Korean signs, a blank too."""
     # "Gallery 12 Case 3 shelf 2": behind a number a case or a shelf begins a piece of its own.
-    behind = rf"(?:(?<=\d)|(?<=\d[a-z]))\s+(?={_counted()}(?!\w))"
+    behind = rf"(?:(?<=\d)|(?<=\d[a-z]))\s+(?={_counted(points)}(?!\w))"
     spaced = rf"|(?<=\S)[\s\u3000]+(?=\S*[{_EASTERN}])" if signs else ""
     return re.compile(rf"{_SEPARATOR.pattern}|{behind}{spaced}", re.IGNORECASE)
 
@@ -369,10 +369,11 @@ def _words() -> tuple[str, ...]:
 @lru_cache(maxsize=4096)
 def _bare_plinth(text: str) -> bool:
     """Whether a text is of a pedestal, and tells it from no other: "Sockel", "on stone plinth", not "left plinth"."""
-    whole, numbered, _ = _patterns()
+    whole, numbered, _ = _patterns("." in text)
     text = text.partition("(")[0] if text.endswith(")") else text  # "on stone plinth (90 cm)"
-    plinth = told_by(text).furniture is Furniture.PEDESTAL and whole.match(text) is not None
-    return plinth and numbered.match(text) is None and _SIDED.search(text) is None
+    if whole.match(text) is None or numbered.match(text) is not None or _SIDED.search(text) is not None:
+        return False
+    return told_by(text).furniture is Furniture.PEDESTAL
 
 
 def _cut_short() -> str:
@@ -386,9 +387,9 @@ def _parts_words(stem: str) -> bool:
 
 
 @cache
-def _counted() -> str:
-    """Return what finds a case, a pedestal or a shelf with its number."""
-    numbered = f"(?:{any_of([*_words(), *CASES]).pattern}|{_cut_short()})"
+def _counted(points: bool) -> str:
+    """Return what finds a case, a pedestal or a shelf with its number; where there are points, words cut short too."""
+    numbered = f"(?:{any_of([*_words(), *CASES]).pattern}{f'|{_cut_short()}' if points else ''})"
     # 3号柜, 第2ケース: the number comes first.
     signs = any_of([*filter(UNPARTED.match, [*_words(), *CASES]), "柜", "櫃"]).pattern
     ahead = rf"[第제]?[\d一二三四五六七八九十]{{1,4}}\s?[号號番번]?\s?(?:{signs})"
@@ -398,9 +399,9 @@ def _counted() -> str:
 
 
 @cache
-def _patterns() -> tuple[re.Pattern[str], re.Pattern[str], re.Pattern[str]]:
+def _patterns(points: bool) -> tuple[re.Pattern[str], re.Pattern[str], re.Pattern[str]]:
     """Return what is wholly a case, what is so with its number, and where one with a number begins."""
-    word, counted = f"(?:{any_of(_words()).pattern})", _counted()
+    word, counted = f"(?:{any_of(_words()).pattern})", _counted(points)
     # 独立ケース1: no blank parts a case from the words ahead of it.
     before = rf"\s*(?:[^\W\d_]+[\s-]+){{0,2}}(?:(?![{_OF_ROOM_SIGNS}])[{_EASTERN}]){{0,4}}?"
     return (
