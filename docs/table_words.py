@@ -51,6 +51,8 @@ TABLE_WORDS = {
     "surfaces": "What objects stand on: by which words records tell it, alone or beside what is stood on, and on which "
     "furniture it is met by chance.",
     "unknown_names": "How often things whose name rules.csv does not know are of each class.",
+    "place_words": "Sides and surfaces of rooms, what sections of exhibitions are called, and letters by which "
+    "designers' schedules mean a case, a plinth, a wall, the floor or the ceiling.",
     "homographs": "Words that name other things in another language, and how far their class by rules.csv is believed.",
     "usual_materials": "What things are mostly made of, for their mass where no material is recorded.",
     "usual_sizes": "How large things of a class are [m], by which an import tells a unit that cannot be.",

@@ -62,6 +62,7 @@ from pipeline.collection.guessing.source import (
     source_of,
     workbook,
 )
+from pipeline.collection.guessing.spots import spots_by_sign
 from pipeline.collection.guessing.taken import MOST_STORES, of_preset, said_of_stores
 from pipeline.collection.guessing.what import (
     describing,
@@ -224,6 +225,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     _add_misspelt(columns, able, told)
     found = _chosen(name, columns, able, told)
     _places_of_cases(found, columns, told)
+    signs = spots_by_sign(columns, found, told)
     headed = place_by_heading(found, columns) if "gallery" not in told.choices else ""
     told.doubts += [headed] * bool(headed)
     by_value = by_values(columns, found, told.choices)
@@ -335,6 +337,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     gone = removed(columns, found, told)
     if gone is not None:
         fields["on_display"] = gone
+    if signs is not None:
+        fields["furniture"] = signs
     document["columns"] = fields
     _cases_in_places(fields, levels or [column for column in (found.get("gallery"), usual) if column is not None], told)
     texts = with_orders(texts_among(columns, used), orders)

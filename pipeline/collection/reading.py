@@ -441,7 +441,7 @@ class RowReader:
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), held)))
         else:
             gallery = located(gallery)
-        spot = spot_of(values.get("case") or "")
+        spot = spot_of(values.get("case") or "", values.get("furniture"))
         if spot:
             values["displayed"] = "; ".join(filter(None, (values.get("displayed"), spot)))
             values["case"] = ""

@@ -16,6 +16,8 @@ CASES = (
     *(
         "case",
         "cases",
+        "S/C",
+        "sh",
         "Schrank",
         "kast",
         "Vit",

@@ -23,7 +23,15 @@ from pipeline.records import Furniture, Item, Origin, Support
      ("Gallery 6, left case", "Gallery 6", "left case"), ("Großer Saal, Vitrine III", "Großer Saal", "Vitrine III"),
      ("Salle 3 > Vitrine 12 > étagère 2", "Salle 3", "Vitrine 12 > étagère 2"), ("第2展厅展柜3", "第2展厅", "展柜3"),
      ("British Galleries, Room 58, Case 3", "British Galleries, Room 58", "Case 3"),
-     ("Grosvenor Gallery: plinth", "Grosvenor Gallery", "plinth"), ("Case 3, Gallery 1", "Gallery 1", "Case 3"),
+     ("Case 3, Gallery 1", "Gallery 1", "Case 3"), ("Salle 3, vit. 2, tabl. 4", "Salle 3", "vit. 2, tabl. 4"),
+     ("P.T. sala 2, vetr. B, ripiano 3", "P.T. sala 2", "vetr. B, ripiano 3"), ("sala 4, gabl. 2", "sala 4", "gabl. 2"),
+     ("Room 4, case 2 (wall case), shelf 3", "Room 4", "case 2 (wall case), shelf 3"),
+     ("2. terem, 3. vitrin", "2. terem", "3. vitrin"), ("Gallery 1 (case 3)", "Gallery 1", "case 3"),
+     ("Museum coach, case F upper shelf", "Museum coach", "case F upper shelf"),
+     ("Rm 4 CC2 (centre case)", "Rm 4", "CC2 (centre case)"), ("G/F Rm 2, S/C 4 sh 2", "G/F Rm 2", "S/C 4 sh 2"),
+     ("Gallery 12 Case 3 Shelf 2", "Gallery 12", "Case 3 Shelf 2"), ("magazyn, regał 7", "magazyn", "regał 7"),
+     ("2F常設展示室 ケース3 中段", "2F常設展示室", "ケース3 中段"), ("收蔵庫A 棚3-2", "收蔵庫A", "棚3-2"),
+     ("常設展示室 独立ケース1", "常設展示室", "独立ケース1"), ("1층 서화실 벽부장", "1층 서화실", "벽부장"),
      ("Gallery 207 - Display case A", "Gallery 207", "Display case A"), ("Vitrine 3", "Vitrine 3", "Vitrine 3"),
      ("Fossil room Case 2", "Fossil room", "Case 2"), ("Wing B Case 4", "Wing B", "Case 4"),
      ("Rittersaal Vitrine 4", "Rittersaal", "Vitrine 4"), ("Sala romana vetrina 3", "Sala romana", "vetrina 3"),
@@ -40,6 +48,7 @@ def test_a_room_and_its_case(place: str, room: str, case: str) -> None:
     ["", "Gallery 1", "Staircase", "Case Study House", "Bookcase Room", "The Shelf", "The Showcase", "Vitrine Gallery",
      "Pedestal Hall", "Cabinet 3", "Kabinett 12", "Second floor", "Ground Floor", "On display",
      "Gallery 2, by the window", "Casement Hall, south",
+     "Gallery 5 North", "Gallery 3 – The Plinth Room", "1. OG, Raum 2", "Studio 5. terem",
      "Main Hall (east)"],
 )  # fmt: skip
 def test_a_room_alone(place: str) -> None:
@@ -57,7 +66,13 @@ def test_a_room_alone(place: str) -> None:
      ("On display (G24/od)", "G24", "od"), ("Sculpture, room 21, case FS", "Sculpture, room 21", "case FS"),
      ("Salle 348 - Salle des Verres, Hors vitrine", "Salle 348 - Salle des Verres", "Hors vitrine"),
      ("Room 5, not in a case", "Room 5", "not in a case"), ("Library floor", "Library", "floor"),
-     ("Level 4, Passports, open display", "Level 4, Passports", "open display")],
+     ("Level 4, Passports, open display", "Level 4, Passports", "open display"),
+     # Of plinths without a number a room has several, which share nothing.
+     ("Grosvenor Gallery: plinth", "Grosvenor Gallery", "plinth"), ("Zaal 1.02, sokkel", "Zaal 1.02", "sokkel"),
+     ("sala 6, ściana płn.", "sala 6", "ściana płn."), ("1Fロビー 壁面", "1Fロビー", "壁面"),
+     ("Udst., rum 3, fritstående", "Udst., rum 3", "fritstående"), ("Rm 2 N wall", "Rm 2", "N wall"),
+     ("Rm 5, on stone plinth (90cm), dowel into plinth", "Rm 5", "on stone plinth (90cm), dowel into plinth"),
+     ("Sala I - panel 3 (colgado)", "Sala I", "panel 3, colgado"), ("Rm 2 centre", "Rm 2", "centre")],
 )  # fmt: skip
 def test_a_room_and_how_a_thing_is_held_there(place: str, room: str, displayed: str) -> None:
     assert parted(place) == (room, "", displayed)
@@ -95,6 +110,13 @@ def test_what_is_in_no_case_stands_in_none(name: str, height_m: float, furniture
     item = Item(object_number="1", gallery="Salle 1", object_name=name, height_m=height_m, displayed=displayed)
     scene = classify(item)
     assert (scene.support, scene.furniture) == (Support.FREESTANDING, furniture)
+
+
+def test_how_a_thing_is_held_in_a_case_is_no_part_of_its_name() -> None:
+    """Each thing of a case had a case of its own."""
+    found = [parted(f"Rm 4, case 2, {how}") for how in ("on perspex mount", "loose", "hung from nylon line")]
+    assert {place.case for place in found} == {"case 2"}
+    assert [place.displayed for place in found] == ["on perspex mount", "loose", "hung from nylon line"]
 
 
 EXPORT = """number,object,material,size,location

@@ -305,7 +305,10 @@ def _mass(dimensions: Dimensions, chosen: list[DimensionPart]) -> Choice | None:
     if not masses:
         return None
     group = chosen[0].group if chosen else -1
-    own = [p for p in masses if p.group == group] or [p for p in masses if p.name == "overall"]
+    # "c. 400 kg" is about as much, and no part c where there are no parts a and b.
+    about = not {"a", "b"} & {p.name for p in dimensions.parts}
+    own = [p for p in masses if p.group == group]
+    own = own or [p for p in masses if p.name == "overall" or (about and p.name == "c")]
     heaviest = max(own or masses, key=lambda p: p.value or 0.0)
     why = "weight of the object itself" if own else "weight of a part, the heaviest given"
     return Choice(heaviest.value or 0.0, heaviest.start, heaviest.end, why)

@@ -32,7 +32,8 @@ _WHOLE = ("with ", "without ")
 
 def is_base(name: str) -> bool:
     """Say whether a name is that of a base or foot, and not of an object with or without one."""
-    return not name.startswith(_WHOLE) and bool(BASES.intersection(name.split()))
+    words = name.partition(" without ")[0].split()  # "part without base" is the thing, and no base
+    return not name.startswith(_WHOLE) and bool(BASES.intersection(words))
 
 
 def is_opening(name: str) -> bool:

@@ -13,6 +13,7 @@ from pipeline.collection.guessing.names import DESCRIPTION, TEXTS, called, named
 from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.guessing.within import placed
 from pipeline.collection.naming import names_thing
+from pipeline.tables.held_rows import HeldAs, told_by
 from pipeline.tables.material_words import folded, material_words
 
 _SOME = 200
@@ -78,6 +79,7 @@ def _likeliest(columns: Sequence[Column], used: Iterable[Column], share: Callabl
         and len(one.distinct) >= _FEWEST
         and not (one.measured or one.of_machine or one.prose or one.pictured > _MOSTLY or one.dimensional > _MOSTLY)
         and placed(one) < _MOSTLY
+        and not (share is things and _of_holding(one))
     ]
     best = max(able, key=lambda one: one[:2], default=None)
     return best[2] if best is not None and best[0] >= _MOSTLY else None
@@ -261,3 +263,9 @@ def settle_number(
             f"{able[0].name!r} {'is empty in many rows' if empty else 'gives many objects one number'}: "
             f"{other.name!r} is taken for theirs"
         )
+
+
+def _of_holding(column: Column) -> bool:
+    """Whether most of a column's texts tell how a thing is held, or on what it stands: "plinth, bolted"."""
+    some = column.distinct[:_SOME]
+    return sum(told_by(text) != HeldAs() for text in some) > _MOSTLY * len(some)

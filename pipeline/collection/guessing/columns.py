@@ -46,6 +46,7 @@ _RECORDS = frozenset(
         "record",
         "records",
         "humanmadeobject",
+        "feature",
     }
     | {"accession number", "inventory number", "object number", "registration number"}
 )

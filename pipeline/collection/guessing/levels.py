@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
+from pipeline.collection.display_words import says_away
 from pipeline.collection.guessing.columns import Column, internal
 from pipeline.collection.guessing.names import called, plain
 from pipeline.collection.guessing.notes import GuessNotes
@@ -12,7 +13,27 @@ from pipeline.collection.guessing.notes import GuessNotes
 _NUMBERED = re.compile(r"(.*\D)0?(\d)\D?", re.DOTALL)
 """The name of a column of one level: what all are called, and its number."""
 _HOUSE = frozenset(
-    {"building", "bldg", "gebaude", "haus", "batiment", "edificio", "edificiu", "gebouw", "bina", "κτιριο"}
+    {
+        "building",
+        "bldg",
+        "byggnad",
+        "bygning",
+        "bygningen",
+        "rakennus",
+        "budynek",
+        "budova",
+        "zgrada",
+        "здание",
+        "predio",
+        "gebaude",
+        "haus",
+        "batiment",
+        "edificio",
+        "edificiu",
+        "gebouw",
+        "bina",
+        "κτιριο",
+    }
 )
 """Words, folded, of a column of houses, in which a name of a room may be that of several."""
 
@@ -42,10 +63,24 @@ def levels_of_place(
     others = {id(one) for field, one in found.items() if field not in ("gallery", "displayed")}
     levels = tuple(one for one in levels if id(one) not in others)
     if len(levels) < 2 or where not in levels:
+        _warn_of_stores(where, [*able, *columns], told)
         return ()
     told.doubts.append(f"the place is {' and '.join(repr(one.name) for one in levels)} together")
     told.questions[:] = [one for one in told.questions if one.key != "gallery"]
     return levels
+
+
+def _warn_of_stores(where: Column, able: Sequence[Column], told: GuessNotes) -> None:
+    """Say that a house is perhaps a store, where the rooms alone are the places: "Magasinet" beside "Hall B"."""
+    for house in able:
+        stores = [text for text in house.distinct if says_away(text)]
+        if house is where or not stores or not _HOUSE.intersection(plain(house.name).split()):
+            continue
+        told.doubts.append(
+            f"column {house.name!r} has {stores[0]!r}, which may be a store: what is in it counts as on display where "
+            f"{where.name!r} names no store; --choose gallery={house.name} goes by the houses"
+        )
+        return
 
 
 def _numbered(where: Column, columns: Sequence[Column]) -> tuple[Column, ...]:

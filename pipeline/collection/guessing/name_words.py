@@ -8,7 +8,31 @@ FORMER = frozenset(
         *("anciens", "vecchio", "vecchia", "precedente", "anterior", "antiguo", "antigo", "oud", "oude", "vorige"),
         *("vechi", "veche", "lender", "leihgeber", "donor", "loan", "art", "mode", "modo", "status", "source", "value"),
         *("date", "year", "datum", "jahr", "annee", "anno", "data", "fecha", "ano", "jaar", "anul", "method", "type"),
-        *("notes", "remarks", "by", "insurance"),
+        *("notes", "note", "remarks", "remark", "comment", "comments", "by", "insurance", "bemerkung", "bemerkungen"),
+        *(
+            "anmerkung",
+            "anmerkungen",
+            "hinweis",
+            "hinweise",
+            "notiz",
+            "notizen",
+            "remarque",
+            "remarques",
+            "observation",
+        ),
+        *(
+            "observations",
+            "commentaire",
+            "commentaires",
+            "osservazione",
+            "osservazioni",
+            "nota",
+            "notas",
+            "observacion",
+        ),
+        *("observaciones", "observacao", "observacoes", "opmerking", "opmerkingen", "bemærkning", "bemærkninger"),
+        *("merknad", "merknader", "anmarkning", "anmarkningar", "uwagi", "poznamka", "poznamky", "примечание"),
+        *("примечания", "σημειωσεισ", "not", "notlar", "megjegyzes", "huomautus"),
     }
 )
 """Words that say that something else is meant than the object's own number and place now."""

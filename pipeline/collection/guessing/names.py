@@ -29,6 +29,7 @@ from pipeline.collection.sources.measurement_terms import unit_of
 from pipeline.errors import InputError
 from pipeline.tables import table
 from pipeline.tables.ideographs import shortened_signs
+from pipeline.tables.romanization import romanized
 from pipeline.tables.rows import Entries, checked, unmarked
 
 TEXTS = "dimensions"
@@ -180,6 +181,13 @@ def column_names() -> dict[str, ColumnMeaning]:
 
 
 @cache
+def _latin_names() -> dict[str, ColumnMeaning]:
+    """Return what Greek and Cyrillic names mean where a database has Latin letters alone: "vysota_sm", "ypsos"."""
+    names = column_names().items()
+    return {plain(latin): what for name, what in reversed(names) for latin in romanized(name)}
+
+
+@cache
 def _singular_names() -> dict[str, ColumnMeaning]:
     """Return what names say in the singular, those left out that say two things then: "Matières", "object_names"."""
     found: dict[str, ColumnMeaning] = {}
@@ -253,7 +261,8 @@ def bare(name: str) -> str:
 
 
 def _says(name: str) -> str | None:
-    found = column_names().get(plain(unit_in(name)[0]))
+    form = plain(unit_in(name)[0])
+    found = column_names().get(form) or _latin_names().get(form)
     return None if found is None else found.field
 
 
@@ -300,6 +309,9 @@ def named(name: str) -> ColumnMeaning | None:
         found = _singular_names().get(_singular(form))
         if found is not None:
             return found
+    for form in forms:
+        if form in _latin_names():
+            return _latin_names()[form]
     if plain(name) in CALLED:
         return ColumnMeaning("title", _WEAK)
     # "L x W x H (mm)": nothing but the order of sizes; "Max W" is none.

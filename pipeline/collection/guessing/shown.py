@@ -12,7 +12,7 @@ from pipeline.collection.guessing.fields import ASKED, MOST_WORDS, tells_display
 from pipeline.collection.guessing.names import called, named, path_of, plain
 from pipeline.collection.guessing.notes import GuessNotes
 from pipeline.collection.guessing.remarks import remarks_of_holding
-from pipeline.collection.places import case_in, parted
+from pipeline.collection.places import SIDES_OF_ROOMS, case_in, parted
 from pipeline.collection.record import CHOICES
 from pipeline.tables.held_rows import HeldAs, stands_or_hangs, told_by
 
@@ -246,7 +246,8 @@ def _holds_ways(column: Column) -> bool:
 
 def _tells_ways(column: Column, share: float) -> bool:
     """Whether so many of a column's different texts, and `_FEWEST` at least, tell how a thing is held."""
-    some = column.distinct[:ASKED]
+    # "N", "CENTER" and "CEILING": a side of the room or its middle tells nothing, and speaks against nothing.
+    some = [text for text in column.distinct[:ASKED] if text.casefold() not in SIDES_OF_ROOMS]
     ways = sum(told_by(text) != HeldAs() or bool(case_in(text)) for text in some)
     return ways >= max(_FEWEST, share * len(some))
 

@@ -54,7 +54,7 @@ _PARTS = frozenset({"foot", "fuß", "fuss", "pied", "pieds", "pie", "pies", "pie
 _WORDS = frozenset({"m", "g", "in"})
 """Units that are words or letters of an order too: not before a bracket or a comma, nor behind other words in one."""
 
-_ENDS = frozenset({"mm", "cm", "m", "in", "ft", "kg", "g", "gr", "lb", "lbs", "oz"})
+_ENDS = frozenset({"mm", "cm", "sm", "m", "in", "ft", "kg", "g", "gr", "lb", "lbs", "oz"})
 """What is a unit at the end of a head, of all short Latin words."""
 
 _SPELLED = 3

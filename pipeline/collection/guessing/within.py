@@ -14,6 +14,8 @@ from pipeline.collection.places import LONGEST, names_room, parted
 
 _PLACED = 0.5
 """Share of a column's texts that must begin as places do (judgement)."""
+_SURELY = 0.75
+"""The same of a column of sentences (judgement)."""
 _REPEATED = 0.9
 """Share of its texts that may be different: objects share rooms."""
 _MOST_WORDS, _FEWEST = 3, 6
@@ -39,7 +41,9 @@ def place_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | N
     -------
     Column or None
     """
-    able = [one for one in untaken(columns, used) if one.filled and not one.prose and named(one.name) is None]
+    able = [one for one in untaken(columns, used) if one.filled and named(one.name) is None]
+    # Notes of a survey may begin with the place, and say then how a thing stands there.
+    able = [one for one in able if not one.prose or (one.length < LONGEST and placed(one) >= _SURELY)]
     # "Salle 4, mur est" and "Salle 4, cheminée" are one room.
     able = [one for one in able if 1 < len({parted(text).room for text in one.distinct}) <= _REPEATED * len(one.filled)]
     best = max(able, key=placed, default=None)

@@ -11,7 +11,7 @@ documentation (``wwwopac.ashx``, xmltype grouped and unstructured) and of its st
 | title, object_name | title; object_name |
 | classification | object_category, else classification, else collection |
 | medium | material and technique |
-| gallery | current_location.name, current_location, or location |
+| gallery | current_location.context, .name, current_location, or location |
 | dimensions | dimension.free and its like |
 | height, ... other_measurements | dimension.part, .type, .value, .unit (`measurements.Measurements`) |
 """
@@ -36,7 +36,10 @@ _FIELDS: dict[str, tuple[str, ...]] = {
     "title": ("title",),
     "object_name": ("object_name", "object.object_name"),
     "classification": ("object_category", "classification.scheme", "collection"),
-    "gallery": ("current_location.name", "current_location", "location.name", "location"),
+    "gallery": (
+        *("current_location.context", "current_location.name", "current_location", "location.context"),
+        *("location.name", "location"),
+    ),
     "dimensions": ("dimension.free", "dimension_free", "dimension.summary", "dimensions"),
 }
 _MEDIUM = ("material", "technique")
@@ -118,12 +121,21 @@ def _language(value: Any) -> str:
 
 def _measured(record: Any, language: str | None, unit: str | None) -> Measurements:
     out = Measurements(unit)
-    groups = [e for e in record.iter() if isinstance(e.tag, str) and e.find("dimension.value") is not None]
+    groups = [e for e in record.iter() if isinstance(e.tag, str) and _names_within(e)]
     for group in groups:
-        columns = [[_text(e, language) for e in group.findall(name)] for name in _MEASURED]
+        columns = [[_text(e, language) for e in group.findall(name)] for name in _names_within(group)]
         for part, kind, value, of in _side_by_side(columns):
             out.add(kind, value, of, part)
     return out
+
+
+def _names_within(group: Any) -> tuple[str, ...]:
+    """Return the names of what a group of measurements has: dimension.value, or value alone; () for no group."""
+    if group.find(_MEASURED[2]) is not None:
+        return _MEASURED
+    short = tuple(name.removeprefix("dimension.") for name in _MEASURED)
+    within = group.tag.casefold() == "dimension" and all(group.find(name) is not None for name in short[1:3])
+    return short if within else ()
 
 
 def _side_by_side(columns: Sequence[list[str]]) -> Iterator[tuple[str, str, str, str]]:
