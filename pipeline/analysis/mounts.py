@@ -100,7 +100,9 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = 
     """
     rows, told, words = mount_rows(), house.stated.get("mount"), told_by(item.displayed).mount
     # What leans does so whatever its class: a panel on an easel hangs no more.
-    leans = words is Mount.LEANING and item.support is Support.FREESTANDING
+    # So does what lies: a carpet on the floor.
+    laid = words is Mount.LYING and row.support is Support.HUNG
+    leans = (words is Mount.LEANING or laid) and item.support is Support.FREESTANDING
     fixed = item.hanging is Hanging.FIXED
     if words is not None and (leans or cased or (item.support in (None, row.support) and not fixed)):
         return MountGuess(rows[words], Origin.MEASURED)

@@ -30,7 +30,7 @@ from pipeline.mitigate.proposals import (
     refused,
 )
 from pipeline.mitigate.saying import ANCHORED, ONLY_HERE, said_besides
-from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
+from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner, drawn
 from pipeline.models.common import N_
 from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
@@ -124,7 +124,8 @@ def advise(
         all_in = [at for at, scene in enumerate(scenes) if at in still or case_of(scene) in cases]
         firm = [fastened(scenes[at]) if loose(scenes[at]) else scenes[at] for at in all_in]
         _, judged = assess(firm, levels, context.silent, numerics)
-        mine = None if chances is None else [chances[at] for at in all_in]
+        # In fastened furniture harm may be likelier than in what slides on its floor: it is drawn for that.
+        mine = None if chances is None or aim is None else drawn(firm, levels, context, aim)
         again = advise(
             firm, judged, levels, context, numerics, catalogue=have, transmitted=transmitted, chances=mine, aim=aim
         )
@@ -133,6 +134,11 @@ def advise(
             if at in still:
                 helped = {one.level: one for one in better if one.measure not in LAST_RESORTS}
                 out[at] = [_fastened_too(one, helped.get(one.level), findings[at], starts) for one in out[at]]
+    if chances is not None and aim is not None:
+        # What was asked for only because its furniture may fall, and is unlikely to be harmed, stays on display.
+        for at in still:
+            asked = levels_asked(chances[at], aim)
+            out[at] = [one for one in out[at] if one.measure not in LAST_RESORTS or one.level in asked]
     return out
 
 

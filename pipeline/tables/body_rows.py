@@ -30,7 +30,7 @@ ON_EDGE = ("panel", "slab")
 CYCLES = ("cycle", "cycle_of_parts", "motorcycle", "motorcycle_of_parts")
 """What stands on two wheels, and on no shelf."""
 
-HELD = ("wind", "stringed", "footwear")
+HELD = ("wind", "stringed", "footwear", "frame", "wreath", "headpiece")
 """What weighs what its kind does, whether it stands or a mount holds it."""
 
 _NUMBERS = (
