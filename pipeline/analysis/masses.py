@@ -36,6 +36,16 @@ missing at most, as in candlesticks that were cast (judgement).
 _CLOTH = (0.3, 1.5, 5.0)
 """The same of cloth on a wall whose thickness nobody recorded: from a silk banner over a tapestry to a pile carpet."""
 
+_PILE = (1.5, 3.5, 6.0)
+"""The same of a carpet: from a kilim to a deep pile."""
+
+_CARPET = re.compile(
+    r"\b(?:carpets?|rugs?|teppich|tapis|tappet[oi]|alfombras?|tapetes?|covor|covoare|karpet|tapijt|halı|dywan|koberec"
+    r"|χαλί|ковёр|ковер)\b|絨毯|段通|地毯",
+    re.IGNORECASE,
+)
+"""What names one."""
+
 _SCREEN = (2.0, 5.0, 15.0)
 """The same of a folding screen that stands: paper or silk over a lattice of wood, to leather and lacquered boards."""
 
@@ -97,7 +107,7 @@ def mass_of(
     cloth = (material.name == CLOTH and spread) and (
         (row.name != FRAMED and not thick) or _SCROLL.search(words) is not None
     )
-    wall = (_CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
+    wall = (_PILE if _CARPET.search(words) else _CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
     face = {Support.HUNG: wall, Support.SUSPENDED: (_SUSPENDED, say.MASS_OF_SUSPENDED)}
     per_area, face_phrase = face.get(support, (None, None))
     if screen or cloth:
