@@ -9,7 +9,7 @@ from pipeline.records import Estimate, Furniture, Item, Support
 from pipeline.records import phrases as say
 from pipeline.tables.assumed import READ
 from pipeline.tables.assumed_rows import Material, ObjectClass
-from pipeline.tables.body_rows import HELD, HUNG, ON_EDGE, PAIR, SCREEN, STACK, STANDS, BodyRow, body_of
+from pipeline.tables.body_rows import HELD, ON_EDGE, PAIR, SCREEN, STACK, STANDS, BodyRow, body_of
 from pipeline.tables.rows import any_of
 
 SOFT = ("inflated", "feathers", "foam", "cork", "basketry", "taxidermy")
@@ -162,9 +162,7 @@ def body(
         return None
     text = f"{item.object_name[:READ]} {item.title[:READ]}"
     found = body_of(text, words.partition(":")[0], row.name, material.name, item.height_m or 0.0)
-    if mount is not None and not mount.stands and (found is None or found.body not in HELD):
-        return None
-    if hangs and (found is None or found.body not in HUNG):
+    if (hangs or (mount is not None and not mount.stands)) and (found is None or found.body not in HELD):
         return None
     # How thick a frame is says nothing of what an altarpiece stands on.
     return None if found is not None and found.body in ON_EDGE and item.depth_m is None else found
