@@ -26,6 +26,15 @@ _SUSPENDED = (0.5, 8.0, 60.0)
 _CHANDELIER = (8.0, 30.0, 90.0)
 """The same of what is called a chandelier: of brass with 25 kg to the m2, of glass and bronze with 60 and more."""
 
+_CLOTH = (0.3, 1.5, 5.0)
+"""The same of cloth on a wall whose thickness nobody recorded: from a silk banner over a tapestry to a pile carpet."""
+
+_PILE = (1.5, 3.5, 6.0)
+"""The same of a carpet: from a kilim to a deep pile."""
+
+_SCREEN = (2.0, 5.0, 15.0)
+"""The same of a folding screen that stands: paper or silk over a lattice of wood, to leather and lacquered boards."""
+
 _CALLED = re.compile(
     r"chandelier|kronleuchter|lüster\b|\blustre|lampadari|\blumier|\baraña|candelabro de techo|πολυέλαιο|люстра"
     r"|паникадил|\bavize|żyrandol|kroonluchter|ljuskrona|シャンデリア|枝形吊灯",
@@ -49,22 +58,12 @@ What fills little of the outline of a lamp is air under its shade and round its 
 missing at most, as in candlesticks that were cast (judgement).
 """
 
-_CLOTH = (0.3, 1.5, 5.0)
-"""The same of cloth on a wall whose thickness nobody recorded: from a silk banner over a tapestry to a pile carpet."""
-
-_PILE = (1.5, 3.5, 6.0)
-"""The same of a carpet: from a kilim to a deep pile."""
-
 _CARPET = re.compile(
     r"\b(?:carpets?|rugs?|teppich|tapis|tappet[oi]|alfombras?|tapetes?|covor|covoare|karpet|tapijt|halı|dywan|koberec"
     r"|χαλί|ковёр|ковер)\b|絨毯|段通|地毯",
     re.IGNORECASE,
 )
 """What names one."""
-
-_SCREEN = (2.0, 5.0, 15.0)
-"""The same of a folding screen that stands: paper or silk over a lattice of wood, to leather and lacquered boards."""
-
 
 _SCROLL = re.compile(
     r"\b(?:hanging scrolls?|kakemono|kakejiku|thangka|tangka|banner|flag|pennant|Hängerolle|Rollbild|Thangka|Fahne|"

@@ -124,8 +124,11 @@ def advise(
         all_in = [at for at, scene in enumerate(scenes) if at in still or case_of(scene) in cases]
         firm = [fastened(scenes[at]) if loose(scenes[at]) else scenes[at] for at in all_in]
         _, judged = assess(firm, levels, context.silent, numerics)
-        # In fastened furniture harm may be likelier than in what slides on its floor: it is drawn for that.
-        mine = None if chances is None or aim is None else drawn(firm, levels, context, aim)
+        # In fastened furniture harm may be likelier than in what slides on its floor: it is drawn for that too.
+        mine = None
+        if chances is not None and aim is not None:
+            fresh = drawn(firm, levels, context, aim)
+            mine = [(*chances[at], *some) for at, some in zip(all_in, fresh, strict=True)]
         again = advise(
             firm, judged, levels, context, numerics, catalogue=have, transmitted=transmitted, chances=mine, aim=aim
         )
