@@ -49,7 +49,6 @@ DISPUTED = {
     ("E.03", "clamps"): "its base is that of its stand, which takes clamps",
     ("E.07", "wide_base"): "a plate under a figure is no harm",
     ("E.08", "clips"): "they hold the foot of its stand",
-    ("N.08", "armature"): "held along its back is how such a disc is shown",
     ("S.10", "wax"): "at 12 kg some trust it to wax; it is told to be looked at twice a year",
 }
 """Measures that nobody had written down and that are no mistake, each with why."""

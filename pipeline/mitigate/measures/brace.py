@@ -55,10 +55,6 @@ ABOVE, BELOW, TOP = 1.2, 0.8, 1.6
 """Heights of the brace, and of the lower and the upper of two, over that of the centre of gravity."""
 
 
-UPRIGHT = 1.2
-"""Height over width from which what nobody knows more of than that it stands has a back to be braced: judgement."""
-
-
 class Brace(Measure):
     """Brace it from behind at or above its middle, and hold its base: it neither rocks nor slides, and bends less."""
 
@@ -85,7 +81,7 @@ class Brace(Measure):
         # What is fastened at its base may be held above its middle as well.
         if scene.mount is not None or scene.support not in (Support.FREESTANDING, Support.FASTENED):
             return NOT_FREE
-        if (self.row.classes and scene.object_class not in self.row.classes) or not _has_a_back(scene):
+        if self.row.classes and scene.object_class not in self.row.classes:
             return refused(N_("objects of its kind cannot be braced so"))
         note = scene.parameters["lever"].note if "lever" in scene.parameters else ""
         # What its record says to be held above its base at one height may be held at two.
@@ -111,12 +107,6 @@ class Armature(Brace):
     gives = ("force", "height", "second")
     bending, stiffer = AT_TWO, STIFFER_AT_TWO
     heights = (BELOW, TOP)
-
-
-def _has_a_back(scene: Scene) -> bool:
-    """Say whether a thing is a figure or a panel by its class, or is as upright as one: no engine on its bed is."""
-    wide = scene.item.width_m or scene.item.depth_m or 0.0
-    return scene.object_class != "object" or (scene.item.height_m or 0.0) >= UPRIGHT * wide
 
 
 def _braced(estimate: Estimate, factors: tuple[float, float, float], once: tuple[float, float, float]) -> Estimate:
