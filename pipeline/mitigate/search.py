@@ -30,7 +30,7 @@ from pipeline.mitigate.proposals import (
     refused,
 )
 from pipeline.mitigate.saying import ANCHORED, ONLY_HERE, said_besides
-from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner, drawn
+from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
 from pipeline.models.common import N_
 from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
@@ -124,11 +124,7 @@ def advise(
         all_in = [at for at, scene in enumerate(scenes) if at in still or case_of(scene) in cases]
         firm = [fastened(scenes[at]) if loose(scenes[at]) else scenes[at] for at in all_in]
         _, judged = assess(firm, levels, context.silent, numerics)
-        # In fastened furniture harm may be likelier than in what slides on its floor: it is drawn for that too.
-        mine = None
-        if chances is not None and aim is not None:
-            fresh = drawn(firm, levels, context, aim)
-            mine = [(*chances[at], *some) for at, some in zip(all_in, fresh, strict=True)]
+        mine = None if chances is None else [chances[at] for at in all_in]
         again = advise(
             firm, judged, levels, context, numerics, catalogue=have, transmitted=transmitted, chances=mine, aim=aim
         )

@@ -378,29 +378,6 @@ def most_sampled(aim: HarmAim) -> Sampling:
     return replace(sampling, samples=min(sampling.samples, MOST))
 
 
-def drawn(
-    scenes: Sequence[Scene], levels: Sequence[LevelMotions], context: Context, aim: HarmAim
-) -> list[tuple[Likelihood, ...]]:
-    """Return how likely scenes come to harm, as closely as telling on which side of the aim that is takes.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-    levels : sequence of LevelMotions
-        The shaking of their floor.
-    context : Context
-    aim : HarmAim
-
-    Returns
-    -------
-    list of tuple of Likelihood
-        Of each scene, one for each level.
-    """
-    stood = [Stood(at, scene, None) for at, scene in enumerate(scenes)]
-    found = likelihoods(stood, len(scenes), levels, most_sampled(aim), context.executor, telling=False, first=FEWEST)
-    return [tuple(some) for some in found]
-
-
 def settled(scene: Scene) -> Scene:
     """Return a scene of which every number is its best estimate, and which feels what its furniture passes on."""
     bare = without_furniture(scene)
