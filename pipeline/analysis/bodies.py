@@ -157,11 +157,12 @@ def body(
     BodyRow or None
         None for what a museum's own row says, and for what does not stand, unless it weighs alike however it is held.
     """
-    if row.own or support not in (Support.FREESTANDING, Support.FASTENED):
+    hangs = support in (Support.HUNG, Support.SUSPENDED)
+    if row.own or not (hangs or support in (Support.FREESTANDING, Support.FASTENED)):
         return None
     text = f"{item.object_name[:READ]} {item.title[:READ]}"
     found = body_of(text, words.partition(":")[0], row.name, material.name, item.height_m or 0.0)
-    if mount is not None and not mount.stands and (found is None or found.body not in HELD):
+    if (hangs or (mount is not None and not mount.stands)) and (found is None or found.body not in HELD):
         return None
     # How thick a frame is says nothing of what an altarpiece stands on.
     return None if found is not None and found.body in ON_EDGE and item.depth_m is None else found

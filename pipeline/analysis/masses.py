@@ -23,12 +23,47 @@ _FRAMED = (5.0, 15.0, 40.0)
 _SUSPENDED = (0.5, 8.0, 60.0)
 """The same of what hangs from above, over its outline: from a mobile of sheet and wire to a chandelier of crystal."""
 
+_CHANDELIER = (8.0, 30.0, 90.0)
+"""The same of what is called a chandelier: of brass with 25 kg to the m2, of glass and bronze with 60 and more."""
+
 _CLOTH = (0.3, 1.5, 5.0)
 """The same of cloth on a wall whose thickness nobody recorded: from a silk banner over a tapestry to a pile carpet."""
+
+_PILE = (1.5, 3.5, 6.0)
+"""The same of a carpet: from a kilim to a deep pile."""
 
 _SCREEN = (2.0, 5.0, 15.0)
 """The same of a folding screen that stands: paper or silk over a lattice of wood, to leather and lacquered boards."""
 
+_CALLED = re.compile(
+    r"chandelier|kronleuchter|lüster\b|\blustre|lampadari|\blumier|\baraña|candelabro de techo|πολυέλαιο|люстра"
+    r"|паникадил|\bavize|żyrandol|kroonluchter|ljuskrona|シャンデリア|枝形吊灯",
+    re.IGNORECASE,
+)
+"""What is called one."""
+
+_SHAFT = Range(0.7, 0.3, 0.95, "judgement: a shaft is of one piece, and its outline is its own where nothing spreads")
+"""Share of its outline that a pole of wood fills."""
+
+_SLIM = 15.0
+"""Length over the larger of the two other sizes from which a thing of wood is a pole: judgement."""
+
+_LARGE = 1.0
+"""Outline [m3] from which what hangs from above is no solid body: nobody hangs tonnes over a room (judgement)."""
+
+_CORED = {"lamp": 2.0}
+"""Class -> mass at most of it with a solid shaft, as a multiple of its own.
+
+What fills little of the outline of a lamp is air under its shade and round its shaft; of the shaft itself a core is
+missing at most, as in candlesticks that were cast (judgement).
+"""
+
+_CARPET = re.compile(
+    r"\b(?:carpets?|rugs?|teppich|tapis|tappet[oi]|alfombras?|tapetes?|covor|covoare|karpet|tapijt|halı|dywan|koberec"
+    r"|χαλί|ковёр|ковер)\b|絨毯|段通|地毯",
+    re.IGNORECASE,
+)
+"""What names one."""
 
 _SCROLL = re.compile(
     r"\b(?:hanging scrolls?|kakemono|kakejiku|thangka|tangka|banner|flag|pennant|Hängerolle|Rollbild|Thangka|Fahne|"
@@ -80,16 +115,21 @@ def mass_of(
     box, own = _outline(item, row), None if shaped else _shell_fill(item, row, material)
     screen = shape is not None and shape.body == SCREEN
     fill = own or row.filled
+    if fill is not None and not (shaped or row.own) and _pole(item, material):
+        fill = own = _SHAFT
     # A slab of stone weighs many times as much as a picture of its size; of what nobody knows what it is made, either.
     by_volume = fill is not None and item.depth_m is not None and material.name != UNKNOWN
     words = f"{item.object_name} {item.title}"
-    cloth = (material.name == CLOTH and support is Support.HUNG) and (
-        (row.name != FRAMED and not thick) or _SCROLL.search(words) is not None
-    )
-    wall = (_CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
-    face = {Support.HUNG: wall, Support.SUSPENDED: (_SUSPENDED, say.MASS_OF_SUSPENDED)}
-    per_area, face_phrase = (_SCREEN, say.MASS_OF_SCREEN) if screen else face.get(support, (None, None))
-    if per_area and face_phrase and item.height_m and item.width_m and (screen or cloth or not by_volume):
+    spread = support is Support.HUNG or (row.support is Support.HUNG and support is Support.FREESTANDING)
+    cloth = spread and unframed(item, row.name, material, thick=thick)
+    wall = (_PILE if _CARPET.search(words) else _CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
+    above = _CHANDELIER if _CALLED.search(words) else _SUSPENDED
+    face = {Support.HUNG: wall, Support.SUSPENDED: (above, say.MASS_OF_SUSPENDED)}
+    per_area, face_phrase = face.get(support, (None, None))
+    if screen or cloth:
+        per_area, face_phrase = (_SCREEN, say.MASS_OF_SCREEN) if screen else wall
+    by_face = screen or cloth or not by_volume or (not shaped and _airy(box, fill, material, item, support))
+    if per_area and face_phrase and item.height_m and item.width_m and by_face:
         area, (low, best, high) = item.height_m * item.width_m, per_area
         note = face_phrase(mass=per_area)
         return Estimate.assumed(best * area, low * area, high * area, "kg", note, "judgement")
@@ -106,13 +146,47 @@ def mass_of(
     return Estimate.assumed(box * fill.value * density.value, low, high, "kg", note, density.source)
 
 
-def solid_mass(item: Item, row: ObjectClass, material: Material) -> Estimate | None:
+def unframed(item: Item, object_class: str, material: Material, *, thick: bool = False) -> bool:
+    """Say whether what hangs is bare cloth or paper: a scroll, a banner, a tapestry.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    object_class : str
+        Row of classes.csv.
+    material : Material
+        What it is made of.
+    thick : bool, optional
+        Whether its depth is recorded, as of what is stretched or mounted.
+    """
+    bare = object_class != FRAMED and not thick
+    return material.name == CLOTH and (bare or _SCROLL.search(f"{item.object_name} {item.title}") is not None)
+
+
+def _pole(item: Item, material: Material) -> bool:
+    """Say whether a thing of wood is so long for its thickness that it is a shaft: a pike, an oar, a staff."""
+    sizes = sorted(size for size in (item.height_m, item.width_m, item.depth_m) if size)
+    return material.name == "wood" and len(sizes) == 3 and sizes[2] >= _SLIM * sizes[1]
+
+
+def _airy(box: float | None, fill: Range | None, material: Material, item: Item, support: Support) -> bool:
+    """Say whether a large thing that hangs from above would weigh more by its outline than its face lets it."""
+    if support is not Support.SUSPENDED or box is None or fill is None or box < _LARGE:
+        return False
+    most = _SUSPENDED[2] * (item.height_m or 0.0) * (item.width_m or 0.0)
+    return box * fill.value * material.density_range.value > most
+
+
+def solid_mass(item: Item, row: ObjectClass, material: Material, own: Estimate | None = None) -> Estimate | None:
     """Return the mass below which a thing of sheet or a shell is hollow, and its critical section with it [kg].
 
     Parameters
     ----------
     item, row, material : Item, ObjectClass, Material
         As of `mass_of`.
+    own : Estimate or None
+        Its mass.
 
     Returns
     -------
@@ -123,6 +197,8 @@ def solid_mass(item: Item, row: ObjectClass, material: Material) -> Estimate | N
     if item.section_width_m is not None or box is None or filled is None or _shell_fill(item, row, material) is None:
         return None
     mass = box * filled.value * material.density_range.value
+    if row.name in _CORED and own is not None:
+        mass = min(mass, _CORED[row.name] * own.value)
     return Estimate(mass, "kg", Origin.ASSUMED, mass, mass, say.SOLID(mass=mass), "judgement")
 
 

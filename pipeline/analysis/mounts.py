@@ -25,6 +25,9 @@ BULKY, LAID = 0.35, 0.2
 THIN = 0.15
 """Smallest over largest size below which what lies in cases leans on its stand: judgement."""
 
+DEEP_ENOUGH = 0.7
+"""Smaller plan dimension over height from which on what is long slides before it tips: judgement."""
+
 TALL, DEEP = 1.2, 0.3
 """Height and least size [m] from which on what is held by mounts stands on a base of its own: judgement."""
 
@@ -100,7 +103,9 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = 
     """
     rows, told, words = mount_rows(), house.stated.get("mount"), told_by(item.displayed).mount
     # What leans does so whatever its class: a panel on an easel hangs no more.
-    leans = words is Mount.LEANING and item.support is Support.FREESTANDING
+    # So does what lies: a carpet on the floor.
+    laid = words is Mount.LYING and row.support is Support.HUNG
+    leans = (words is Mount.LEANING or laid) and item.support is Support.FREESTANDING
     fixed = item.hanging is Hanging.FIXED
     if words is not None and (leans or cased or (item.support in (None, row.support) and not fixed)):
         return MountGuess(rows[words], Origin.MEASURED)
@@ -124,6 +129,9 @@ def mount_of(item: Item, row: ObjectClass, house: HouseEffect, *, cased: bool = 
         elif way is Mount.STANDING and _on_small_stand(item, row, rows):
             # A mask or a helmet on a stand has no foot: what stands is its mount, and how that grips is not told.
             way = Mount.UNKNOWN
+        elif way is Mount.STANDING and _low(item):
+            # An anchor stock on two blocks lies along them.
+            way = Mount.LYING
         return MountGuess(rows[way], Origin.STATED if "held" in house.stated else Origin.MEASURED)
     # Miniatures and plaques that are small enough lie in their case.
     other = rows[Mount.LYING if cased and max(sizes_known(item).values(), default=LAID) < LAID else Mount.UNKNOWN]
@@ -169,6 +177,15 @@ def _thin(item: Item) -> bool:
     """Say whether a thing is so thin that it leans on whatever it is said to stand on."""
     sizes = sizes_known(item).values()
     return len(sizes) > 1 and min(sizes) < THIN * max(sizes)
+
+
+def _low(item: Item) -> bool:
+    """Say whether a thing is so much longer than high, and nearly as deep as that, that it lies on its underside."""
+    sizes = sizes_known(item)
+    if len(sizes) < len(SIZES):
+        return False
+    plan = (sizes["width"], sizes["depth"])
+    return sizes["height"] <= BULKY * max(plan) and min(plan) >= DEEP_ENOUGH * sizes["height"]
 
 
 def _bulky(item: Item) -> bool:

@@ -345,7 +345,7 @@ class SceneParameters:
         self._keep("lever", Estimate(lever, "m", Origin.DERIVED, low, high, note))
         self.found |= found.section.estimates(item.orientation_deg is not None)
         shaped = self.shape is not None and self.shape.fill is not None
-        solid = None if shaped else solid_mass(item, self.row, self.bearing)
+        solid = None if shaped else solid_mass(item, self.row, self.bearing, mass)
         self._keep("solid_mass", solid)
         if solid is not None:
             # What bends is as stiff for its mass as the solid one.

@@ -32,8 +32,13 @@ _LINES = (
     r"câbles?|cordes?|caten[ae]|cav[io]|cadenas?|cables?|αλυσίδα|συρματόσχοινο)"
 )
 _LONG = r"(\d{1,3}(?:[.,]\d{1,3})?)\s?(m|cm|ft|feet)\b"
+_OF_STUFF = (
+    r"(?: (?:aus|en|in|di|de|of|d['’]) ?(?:Edelstahl|Stahl|steel|acero|acier|acciaio|aço|hierro|fer|ferro|laiton|latón"
+    r"|ottone|n[yi]lon|chanvre|canapa|cáñamo|algodón|cordage)| ropes?| d['’](?:acier|acciaio|inox))?"
+)
 _HUNG_BY = re.compile(
-    rf"\b{_LINES}(?:,| (?:of|von|de|di|da))? ?{_LONG}|(?<![\d.,]){_LONG}(?:[ -]long)? {_LINES}\b", re.IGNORECASE
+    rf"\b{_LINES}{_OF_STUFF}(?:,| (?:of|von|de|di|da))? ?{_LONG}|(?<![\d.,]){_LONG}(?:[ -]long)? {_LINES}\b",
+    re.IGNORECASE,
 )
 """How long a line is that something hangs by: "by a chain of 2 m", "on 3 m cables"."""
 

@@ -133,6 +133,11 @@ def advise(
             if at in still:
                 helped = {one.level: one for one in better if one.measure not in LAST_RESORTS}
                 out[at] = [_fastened_too(one, helped.get(one.level), findings[at], starts) for one in out[at]]
+    if chances is not None and aim is not None:
+        # What was asked for only because its furniture may fall, and is unlikely to be harmed, stays on display.
+        for at in still:
+            asked = levels_asked(chances[at], aim)
+            out[at] = [one for one in out[at] if one.measure not in LAST_RESORTS or one.level in asked]
     return out
 
 

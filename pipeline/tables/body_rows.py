@@ -30,8 +30,11 @@ ON_EDGE = ("panel", "slab")
 CYCLES = ("cycle", "cycle_of_parts", "motorcycle", "motorcycle_of_parts")
 """What stands on two wheels, and on no shelf."""
 
-HELD = ("wind", "stringed", "footwear")
-"""What weighs what its kind does, whether it stands or a mount holds it."""
+HELD = (
+    *("wind", "stringed", "footwear", "frame", "wreath", "headpiece", "wall_clock", "leaded", "bell", "lump", "boat"),
+    *("aircraft", "skeleton", "cycle", "cycle_of_parts"),
+)
+"""What weighs what its kind does, whether it stands, hangs or a mount holds it."""
 
 _NUMBERS = (
     *(f"{kind}_{end}" for kind in ("cg", "base", "section") for end in ("ratio", "low", "high")),

@@ -34,7 +34,6 @@ FOLDER = Path(__file__).parents[1] / "data" / "collections"
 UNWEIGHED = {
     "N.07": "an egg that rests in a ring is no body with a foot: the range covers it",
     "N.08": "a disc fills more of its box than a thing of stone that may be anything",
-    "N.09": "a flying cast is thinner than any body of its outline: the range nearly covers it",
     "S.02": "most of an orrery's outline is air, more than of a microscope's: the range covers it",
     "E.02": "a log fills more of its box than a thing of wood that may be anything",
     "A.05": "of cloth, which a scroll is lighter than",

@@ -57,11 +57,21 @@ def name_and_title(
     if not names and title is not None and title.filled and not {"title", "object_name"} & chosen.keys():
         # "name" beside "title".
         called = next((one for one in able["title"] if one.filled and plain(path_of(one.name)[-1]) in CALLED), title)
-        return (called, title) if called is not title and _words(title) >= _MORE * _words(called) else None
+        if called is title:
+            # Two columns that are both called names: of kinds of things there are fewer, in fewer letters.
+            kinds = (one for one in able["title"] if one.filled and len(one.distinct) < len(title.distinct))
+            called = next((one for one in kinds if _letters(title) >= _MORE * _letters(one)), title)
+            return (called, title) if called is not title else None
+        return (called, title) if _words(title) >= _MORE * _words(called) else None
     if len(names) < 2 or "title" in found or {"title", "object_name"} & chosen.keys():
         return None
     short, long = sorted(names, key=_words)
     return (short, long) if _words(long) >= _MORE * _words(short) else None
+
+
+def _letters(column: Column) -> float:
+    some = column.distinct[:_SOME]
+    return sum(map(len, some)) / len(some)
 
 
 def _words(column: Column) -> float:

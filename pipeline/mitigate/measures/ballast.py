@@ -8,15 +8,26 @@ from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models.common import N_
 from pipeline.quantities import Quantity
-from pipeline.records import Estimate, Origin, Scene, Support
+from pipeline.records import Estimate, Item, Origin, Scene, Support
 from pipeline.records import phrases as say
 from pipeline.tables.limit_rows import limit
+from pipeline.tables.rows import any_of
 
 STEPS = (0.2, 0.4, 0.7, 1.0)
 """Ballast that is tried, over the most that there may be."""
 
 SEEN_THROUGH = frozenset({"glass"})
 """Materials that no ballast is put into: rows of materials.csv."""
+
+LYING = 1.25
+"""Length over the other sizes from which a vessel is one that lies: judgement."""
+
+_ON_ITS_SIDE = any_of([
+    *("on its side", "on their side", "on their sides", "lying", "liegend", "auf der Seite", "couché", "couchée"),
+    *("sur le côté", "coricato", "coricata", "su un fianco", "disteso", "tumbado", "tumbada", "acostado", "acostada"),
+    *("de lado", "deitado", "deitada", "πλαγιασμένο", "πλαγιαστό", "横置き", "横たえ"),
+])  # fmt: skip
+"""What says of a vessel that it lies."""
 
 
 class Ballast(Measure):
@@ -95,6 +106,8 @@ class Ballast(Measure):
             return N_("it does not rock: a lower centre of gravity does not help")
         if self.row.classes and scene.object_class not in self.row.classes:
             return N_("objects of its kind have no room for ballast")
+        if _lies(scene.item):
+            return N_("objects of its kind have no room for ballast")
         if touched(scene.item, runner.values) in SEEN_THROUGH:
             return N_("ballast in glass is seen, and presses on its wall")
         return ""
@@ -129,3 +142,10 @@ class Ballast(Measure):
             }
             candidates.append(Candidate(numbers, (Trial(lowered),), mark_of="standing"))
         return Proposal(tuple(candidates))
+
+
+def _lies(item: Item) -> bool:
+    """Say whether a vessel lies on its side: what is put into it lies on its wall, and runs out at its mouth."""
+    plan = [side for side in (item.width_m, item.depth_m) if side]
+    long = len(plan) > 1 and max(plan) > LYING * max(min(plan), item.height_m or 0.0)
+    return long or _ON_ITS_SIDE.search(f"{item.title}; {item.displayed}") is not None

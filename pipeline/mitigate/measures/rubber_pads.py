@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+from pipeline.analysis.masses import unframed
+from pipeline.analysis.scene_parameters import material_of
 from pipeline.mitigate.measures.base import DAMPING, Measure, exactly, movement, with_parameters
 from pipeline.mitigate.proposals import Deficiency, Proposal, known_to_swing, refused
 from pipeline.mitigate.trials import TrialRunner
@@ -32,7 +34,10 @@ class RubberPads(Measure):
         """Propose pads of the damping of the row."""
         if one.scene.support is not Support.HUNG:
             return refused(N_("it does not hang on a wall"))
-        if "damping" not in one.scene.parameters or not known_to_swing(one.scene):
+        scene = one.scene
+        bare = unframed(scene.item, scene.object_class, material_of(scene.item), thick=scene.item.depth_m is not None)
+        if "damping" not in scene.parameters or not known_to_swing(scene) or bare:
+            # A scroll flutters, and has no lower corners to be padded.
             return refused(N_("pads help only what swings, and it is not known to"))
         if one.scene.parameters["damping"].value >= self.row.limit:
             return refused(N_("it has as much damping already"))
