@@ -183,7 +183,7 @@ def _parts() -> Mapping[str, tuple[tuple[str, frozenset[int]], ...]]:
 
 @lru_cache(maxsize=256)
 def _perhaps(text: str) -> frozenset[int]:
-    """Return the rows of which a part of a word is in a text; their words need not be there, those of others are not."""
+    """Return the rows of which a part of a word is in a text, where their words may be; those of others are not."""
     folded, parts = _folded(text), _parts()
     begins = {folded[at : at + length] for length in (0, 1, 2) for at in range(len(folded))} & parts.keys()
     return frozenset().union(*(rows for one in begins for part, rows in parts[one] if part in folded))

@@ -24,7 +24,9 @@ COUNT = 400
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:
-    return read_motion(resource("site_motions", "demo"))[0]
+    """The strongest part of the demonstration's record."""
+    whole = read_motion(resource("site_motions", "demo"))[0]
+    return Motion(whole.dt, whole.acceleration[:, round(15.0 / whole.dt) : round(30.0 / whole.dt)], "strong")
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ from pipeline.collection.opening import open_source
 from pipeline.collection.sources.base import Source
 from pipeline.collection.sources.registry import SOURCES, _source
 from pipeline.errors import InputError
+from tests.museum import in_common
 from tests.warm import kouros_process
 
 PLUGIN = '''
@@ -112,6 +113,7 @@ def kouros(outside: Path, folder: Path, *words: str) -> str:
 def test_a_source_of_another_package_is_imported_and_a_night_is_run_with_it(outside: Path, tmp_path: Path) -> None:
     museum = tmp_path / "museum"
     museum.mkdir()
+    in_common(museum)
     (museum / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     (museum / "kouros.toml").write_text(SETTINGS, encoding="utf-8")
     export = museum / "objects.jsonl"
