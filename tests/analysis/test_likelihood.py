@@ -217,7 +217,9 @@ def test_neither_order_nor_company_changes_a_digit() -> None:
     alone = [likelihoods([Stood(0, scene)], 1, [shaking], usual, Threads(2))[0] for scene in scenes[:4]]
     assert list(reversed(turned)) == whole
     assert alone == whole[:4]
-    assert len({one[0].samples for one in whole if one}) > 2, "how many samples each takes is its own matter"
+    assert len({one[0].samples for one in whole if one}) > (2 if SOAK else 1), (
+        "how many samples each takes is its own matter"
+    )
 
 
 def test_what_grows_with_the_shaking_is_never_less_likely_under_more_of_it() -> None:

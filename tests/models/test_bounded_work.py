@@ -113,6 +113,7 @@ def work(answers: Queue[Any]) -> None:
     answers.put(("done", ""))
 
 
+@pytest.mark.long("test_a_pendulum_that_is_not_followed_is_out_by_its_length_at_most")
 def test_every_call_ends_and_says_what_it_did_not_follow() -> None:
     """Nothing interrupts a compiled loop: the calls are made in a process that is ended when one takes too long."""
     context = mp.get_context("spawn")

@@ -115,6 +115,7 @@ def test_the_names_are_of_every_class() -> None:
     assert set(NAMES) == set(object_classes())
 
 
+@LONG
 def test_every_class_is_assessed_however_it_is_held_and_whatever_is_missing_extreme_or_contradictory(
     tmp_path: Path,
 ) -> None:
