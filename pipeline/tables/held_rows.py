@@ -157,7 +157,7 @@ def _denied(text: str, said: re.Match[str]) -> bool:
 
 @cache
 def _rows() -> tuple[_OneRow, ...]:
-    out = []
+    out: list[_OneRow] = []
     for row in checked(HeldWords, table("held_words"), "held_words.csv", named="words"):
         pairs = [word for word in row.words if _PAIR in word]
         alone = re.compile(_any([word for word in row.words if word not in pairs]), re.IGNORECASE)
