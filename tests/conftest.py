@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 import sqlite3
 import sys
 import tempfile
@@ -41,6 +42,9 @@ ROOMY = 8e9
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    # Who starts the tests in the background lets them ignore what Ctrl-C sends, and what they start inherits it.
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     # As the command does: to look for garbage every 700 objects takes a tenth of all tests.
     gc.set_threshold(*RARELY)
     if not hasattr(config, "workerinput"):

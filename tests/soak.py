@@ -29,5 +29,5 @@ def some(cases: Iterable[Case], daily: int) -> list[Case]:
 
 
 def examples(soak: int) -> int:
-    """Return how many examples of a property are tried: every day the same quarter, other ones at each `make soak`."""
-    return soak if SOAK else max(10, soak // 4)
+    """Return how many examples of a property are tried: every day the same sixth, other ones at each `make soak`."""
+    return soak if SOAK else max(10, soak // 6)

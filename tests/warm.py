@@ -122,8 +122,12 @@ def forget_packages() -> None:
                     found.cache_clear()
 
 
-PATTERNS = ("pipeline.analysis.evidence", "pipeline.analysis.footing", "pipeline.records.phrase", "pipeline.kernels")
-"""Whose caches hold nothing of other packages."""
+PATTERNS = (
+    *("pipeline.analysis.evidence", "pipeline.analysis.footing", "pipeline.analysis.rule_table"),
+    *("pipeline.kernels", "pipeline.records.phrase"),
+    *("pipeline.report.files.sheet_fonts", "pipeline.report.pages.environment"),
+)
+"""Whose caches hold nothing of other packages: of words, of Kouros's own rules and templates, and of fonts."""
 
 NIGHTLY = ("alembic.command", "obspy.signal", "openpyxl", "pandas", "psycopg", "pyarrow.parquet", "pywt")
 """What a night imports when it comes to it."""

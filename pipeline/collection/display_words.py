@@ -141,13 +141,16 @@ def says_away(location: str) -> bool:
     if _CJK.search(whole):
         return any(word in whole for word in (*meant["away"], *meant["store"]) if _CJK.search(word))
     named = meant["gallery"].intersection(whole.split())
-    if any(_says(whole, phrase, meant["lender"]) for phrase in meant["away"] if " " in phrase or not named):
+    # Most are not there at all, which is seen at once.
+    away = [phrase for phrase in meant["away"] if phrase in whole and (" " in phrase or not named)]
+    if any(_says(whole, phrase, meant["lender"]) for phrase in away):
         return True
     segments = [segment for segment in map(_folded, _SEGMENTS.split(location)) if segment]
     # Ausstellungsraum begins as Ausstellung does.
     rooms = tuple(word for word in meant["gallery"] if len(word) >= _LONG)
     shown = any(word in meant["gallery"] - {_STUDY} or word.startswith(rooms) for word in _NAMES.findall(whole))
-    kept = any(_says(segment, phrase, frozenset()) for segment in segments for phrase in meant["workroom"])
+    work = [(segment, phrase) for segment in segments for phrase in meant["workroom"] if phrase in segment]
+    kept = any(_says(segment, phrase, frozenset()) for segment, phrase in work)
     return (kept and not shown) or any(map(_is_store, segments))
 
 

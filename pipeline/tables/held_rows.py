@@ -1,7 +1,7 @@
 """Rows of held_words.csv: how a thing is held and what it stands on, by the words that museums have for its display."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import Annotated
@@ -121,16 +121,18 @@ class HeldAs:
 class _OneRow:
     """A row, ready to match: what finds its words, and what finds two that belong together, each with the first."""
 
+    number: int
     row: HeldWords
     words: re.Pattern[str]
     pairs: tuple[tuple[tuple[str, ...], re.Pattern[str]], ...]
 
     def found(self, text: str) -> Iterator[re.Match[str]]:
         """Yield where the words of the row stand in a text."""
-        yield from self.words.finditer(text)
-        folded = text.casefold()
+        # Most texts have none of them: to look for a part of each is cheap.
+        if self.number in _perhaps(text):
+            yield from self.words.finditer(text)
+        folded = text.casefold() if self.pairs else ""
         for first, pattern in self.pairs:
-            # Most texts have none of them: to look for that is cheap.
             if any(one in folded for one in first):
                 yield from pattern.finditer(text)
 
@@ -157,12 +159,41 @@ def _denied(text: str, said: re.Match[str]) -> bool:
 
 @cache
 def _rows() -> tuple[_OneRow, ...]:
-    out = []
+    out: list[_OneRow] = []
     for row in checked(HeldWords, table("held_words"), "held_words.csv", named="words"):
         pairs = [word for word in row.words if _PAIR in word]
         alone = re.compile(_any([word for word in row.words if word not in pairs]), re.IGNORECASE)
-        out.append(_OneRow(row, alone, tuple((_first(word), re.compile(_both(word), re.IGNORECASE)) for word in pairs)))
+        both = tuple((_first(word), re.compile(_both(word), re.IGNORECASE)) for word in pairs)
+        out.append(_OneRow(len(out), row, alone, both))
     return tuple(out)
+
+
+@cache
+def _parts() -> Mapping[str, tuple[tuple[str, frozenset[int]], ...]]:
+    """Return a part of every word that stands alone, with the rows it is of, by its first two letters."""
+    of_rows: dict[str, set[int]] = {}
+    for one in _rows():
+        for word in one.row.words:
+            if _PAIR not in word:
+                for part in _first(_folded(word)):
+                    of_rows.setdefault(part, set()).add(one.number)
+    out: dict[str, list[tuple[str, frozenset[int]]]] = {}
+    for part, rows in of_rows.items():
+        out.setdefault(part[:2], []).append((part, frozenset(rows)))
+    return {begins: tuple(some) for begins, some in out.items()}
+
+
+@lru_cache(maxsize=256)
+def _perhaps(text: str) -> frozenset[int]:
+    """Return the rows of which a part of a word is in a text, where their words may be; those of others are not."""
+    folded, parts = _folded(text), _parts()
+    begins = {folded[at : at + length] for length in (0, 1, 2) for at in range(len(folded))} & parts.keys()
+    return frozenset().union(*(rows for one in begins for part, rows in parts[one] if part in folded))
+
+
+def _folded(text: str) -> str:
+    """Return a text in which a word is wherever a pattern that ignores case finds it: to that each i is one."""
+    return text.replace("ı", "i").replace("İ", "i").casefold()
 
 
 def _any(words: Sequence[str]) -> str:

@@ -224,10 +224,15 @@ def probabilities(found: Weights, items: Sequence[Item]) -> NDArray[np.float64]:
     return shares_of(scores)
 
 
-def left_out(objects: Sequence[Labelled]) -> dict[str, tuple[list[Labelled], NDArray[np.float64]]]:
-    """Return by museum its objects, and the probabilities of their classes by the weights of all other museums."""
+def left_out(
+    objects: Sequence[Labelled], museums: Sequence[str] = ()
+) -> dict[str, tuple[list[Labelled], NDArray[np.float64]]]:
+    """Return by museum its objects, and the probabilities of their classes by the weights of all other museums.
+
+    museums : those that are left out one after the other; all where none is named
+    """
     out = {}
-    for museum in sorted({one.museum for one in objects}):
+    for museum in sorted(museums or {one.museum for one in objects}):
         mine = [one for one in objects if one.museum == museum]
         others = fit([one for one in objects if one.museum != museum])
         out[museum] = mine, probabilities(others, [one.item for one in mine])

@@ -40,7 +40,7 @@ from pipeline.records import (
     Verdict,
 )
 from tests.museum import carnegie
-from tests.soak import some
+from tests.soak import SOAK, some
 
 MANY = Sampling(4096, 2.0)
 """As many samples, whatever the word: of none is that certain."""
@@ -206,7 +206,7 @@ def falling(scenes: list[Scene], motion: Motion, angle: float, rng: np.random.Ge
 
 
 def test_neither_order_nor_company_changes_a_digit() -> None:
-    scenes = scenes_on_display()[::46]
+    scenes = scenes_on_display()[:: 46 if SOAK else 92]
     usual = Sampling()
     shaking = level(strong(), strong(6))
     stood = [Stood(at, scene) for at, scene in enumerate(scenes)]
@@ -214,10 +214,12 @@ def test_neither_order_nor_company_changes_a_digit() -> None:
     turned = likelihoods(
         [Stood(at, s) for at, s in enumerate(reversed(scenes))], len(scenes), [shaking], usual, Threads(2)
     )
-    alone = [likelihoods([Stood(0, scene)], 1, [shaking], usual, Threads(2))[0] for scene in scenes[:6]]
+    alone = [likelihoods([Stood(0, scene)], 1, [shaking], usual, Threads(2))[0] for scene in scenes[:4]]
     assert list(reversed(turned)) == whole
-    assert alone == whole[:6]
-    assert len({one[0].samples for one in whole if one}) > 2, "how many samples each takes is its own matter"
+    assert alone == whole[:4]
+    assert len({one[0].samples for one in whole if one}) > (2 if SOAK else 1), (
+        "how many samples each takes is its own matter"
+    )
 
 
 def test_what_grows_with_the_shaking_is_never_less_likely_under_more_of_it() -> None:

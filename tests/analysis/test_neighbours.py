@@ -148,7 +148,7 @@ def test_pendulums_out_of_step_come_closer_than_either_moves() -> None:
 
     times = np.arange(0.0, 72.0, 0.01)
     u = [
-        length * np.sin(solve_ivp(rate, (0.0, 72.0), [0.0, 0.0], "DOP853", times, args=(length,), max_step=0.01,
+        length * np.sin(solve_ivp(rate, (0.0, 72.0), [0.0, 0.0], "DOP853", times, args=(length,), max_step=0.05,
                                   rtol=1e-8).y[0])
         for length in lengths
     ]  # fmt: skip

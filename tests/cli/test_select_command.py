@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.museum import kouros
+from tests.museum import kouros, own_site
 
 pytestmark = pytest.mark.slow_file
 
@@ -26,7 +26,8 @@ def test_select_says_what_is_lacking_and_writes_the_best_only_when_asked(tmp_pat
     assert nothing.returncode == 4
     assert "none can be used (there are no files)" in nothing.stderr
     (tmp_path / "demo").rmdir()
-    kouros("motions", "process", "demo", "--out", "demo", folder=tmp_path)
+    own_site(tmp_path, "raw")
+    assert kouros("motions", "process", "raw", "--out", "demo", folder=tmp_path).returncode == 0
     refused = kouros(*words, folder=tmp_path)
     assert refused.returncode == 4
     assert "1 motion can be chosen, and 2 are asked for" in refused.stderr

@@ -35,7 +35,7 @@ def _drained(browser: Chrome) -> Iterator[None]:
 
 
 def told(browser: Chrome, words: str) -> None:
-    WebDriverWait(browser, 10).until(lambda b: words in b.find_element(By.ID, "lost").text)
+    WebDriverWait(browser, 10, 0.05).until(lambda b: words in b.find_element(By.ID, "lost").text)
 
 
 def cut(browser: Chrome, *, off: bool) -> None:
@@ -56,7 +56,7 @@ def test_a_lost_connection_is_told_and_what_was_typed_is_sent_later(museum: Path
             cut(browser, off=False)
             see(browser, "input[type=search]").send_keys(" 3")
             told(browser, "")
-            WebDriverWait(browser, 10).until(lambda b: b.find_element(By.ID, "lost").text == "")
+            WebDriverWait(browser, 10, 0.05).until(lambda b: b.find_element(By.ID, "lost").text == "")
             browser.get(there + address_of("2.3"))
             see(browser, "#accept summary").click()
             sign(browser, "#accept", "A. Smith")
@@ -98,7 +98,7 @@ def test_a_session_that_ended_loses_nothing(museum: Path, browser: Chrome) -> No
         assert not read_decisions(engine_of(museum))
         first = browser.current_window_handle
         see(browser, "#lost a").click()
-        WebDriverWait(browser, 10).until(lambda b: len(b.window_handles) == 2)
+        WebDriverWait(browser, 10, 0.05).until(lambda b: len(b.window_handles) == 2)
         browser.switch_to.window(next(one for one in browser.window_handles if one != first))
         enter("another under the sun")
         browser.close()

@@ -46,7 +46,7 @@ def apart(museum: Path, browser: Chrome) -> Iterator[str]:
 
 
 def see(browser: Chrome, selector: str) -> WebElement:
-    found: WebElement = WebDriverWait(browser, 10).until(lambda b: b.find_element(By.CSS_SELECTOR, selector))
+    found: WebElement = WebDriverWait(browser, 10, 0.05).until(lambda b: b.find_element(By.CSS_SELECTOR, selector))
     return found
 
 
@@ -55,7 +55,7 @@ def press(browser: Chrome, element: WebElement) -> None:
     old = browser.find_element(By.TAG_NAME, "html")
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", element)
     element.click()
-    WebDriverWait(browser, 10).until(lambda b: b.find_element(By.TAG_NAME, "html") != old)
+    WebDriverWait(browser, 10, 0.05).until(lambda b: b.find_element(By.TAG_NAME, "html") != old)
 
 
 def sign(browser: Chrome, form: str, name: str) -> None:
@@ -78,7 +78,7 @@ def test_a_curator_finds_an_object_sees_why_and_accepts_the_risk(apart: str, bro
     browser.delete_all_cookies()
     see(browser, "input[type=search]").send_keys("vase 3 room 2")
     # As one types, without a button: the list is the answer's, and the address keeps what was asked for.
-    WebDriverWait(browser, 10).until(lambda b: len(b.find_elements(By.CSS_SELECTOR, ".hits li")) == 1)
+    WebDriverWait(browser, 10, 0.05).until(lambda b: len(b.find_elements(By.CSS_SELECTOR, ".hits li")) == 1)
     assert "q=vase" in browser.current_url
     press(browser, see(browser, ".hits a"))
     assert see(browser, "h1").text == "2.3 Vase 3"
@@ -110,7 +110,7 @@ def test_a_registrar_says_how_paintings_hang_and_measures_in_fractions(
     browser.get(running + "/house")
     Select(see(browser, "select[name=class]")).select_by_value("framed")
     Select(see(browser, "select[name=gallery]")).select_by_value("Room 0")
-    WebDriverWait(browser, 10).until(lambda b: "for 6 objects" in b.find_element(By.ID, "states").text)
+    WebDriverWait(browser, 10, 0.05).until(lambda b: "for 6 objects" in b.find_element(By.ID, "states").text)
     Select(see(browser, "select[name=word]")).select_by_value("two_hooks")
     sign(browser, "#rule", "B. Rossi")
     press(browser, see(browser, "#rule > button"))

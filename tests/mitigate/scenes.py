@@ -17,7 +17,9 @@ from pipeline.resources import resource
 
 
 def demo_motion() -> Motion:
-    return read_motion(resource("site_motions", "demo"))[0]
+    """The main shock of the demonstration's record: 25 of 100 s, with the peaks of all, at a quarter of the cost."""
+    whole = read_motion(resource("site_motions", "demo"))[0]
+    return Motion(whole.dt, whole.acceleration[:, round(12.0 / whole.dt) : round(37.0 / whole.dt)], whole.name)
 
 
 def solve_all(

@@ -26,6 +26,7 @@ from pipeline.mitigate.trials import HarmAim
 from pipeline.motions import read_motion
 from pipeline.records import Origin, Recommendation, Sampling, Scene
 from pipeline.resources import resource
+from tests.soak import SOAK
 
 pytestmark = pytest.mark.slow_file
 
@@ -59,8 +60,8 @@ def expected() -> Mapping[str, Mapping[str, str]]:
         return {row["number"]: row for row in csv.DictReader(stream)}
 
 
-MISSED = 7
-"""Of 68 states as many were otherwise than written when this was first reached; more is a loss."""
+MISSED = 7 if SOAK else 4
+"""Of 68 states as many were otherwise than written when this was first reached, of half four; more is a loss."""
 
 
 @pytest.fixture(scope="module")
@@ -76,13 +77,15 @@ def scenes() -> Mapping[str, Scene]:
 def advised(scenes: Mapping[str, Scene]) -> Mapping[str, tuple[float, list[Recommendation]]]:
     """The probability of harm and the advice under one motion of 0.4 g and 38 cm/s that fits EN 1998-1."""
     level = [LevelMotions("design", "max", (read_motion(resource("site_motions", "demo_suite"))[4],))]
-    aim, context, found = HarmAim(0.1, Sampling(128)), Context(Threads(1)), list(scenes.values())
+    # Every day each second object: what one is advised does not hang on others.
+    some = dict(list(scenes.items())[:: 1 if SOAK else 2])
+    aim, context, found = HarmAim(0.1, Sampling(128)), Context(Threads(1)), list(some.values())
     _, findings = assess(found, level, context)
     drawn = likelihoods(stood_of([Placed(scene) for scene in found]), len(found), level, aim.sampling, context.executor)
     chances = [tuple(one) for one in drawn]
     advice = advise(found, findings, level, context, chances=chances, aim=aim)
-    harm = [max((one.probability for one in some), default=0.0) for some in chances]
-    return dict(zip(scenes, zip(harm, advice, strict=True), strict=True))
+    harm = [max((one.probability for one in of_one), default=0.0) for of_one in chances]
+    return dict(zip(some, zip(harm, advice, strict=True), strict=True))
 
 
 def test_masses_are_those_of_such_things(scenes: Mapping[str, Scene]) -> None:
@@ -105,6 +108,8 @@ def test_masses_are_those_of_such_things(scenes: Mapping[str, Scene]) -> None:
 def test_nothing_that_harms_is_advised(advised: Mapping[str, tuple[float, list[Recommendation]]]) -> None:
     wrong = {}
     for number, row in expected().items():
+        if number not in advised:
+            continue
         for one in advised[number][1]:
             good = {*row["right"].split("|"), *row["acceptable"].split("|")}
             if one.measure not in good and (number, one.measure) not in DISPUTED:
@@ -117,6 +122,8 @@ def test_states_are_those_that_an_engineer_expects(
 ) -> None:
     missed = {}
     for number, row in expected().items():
+        if number not in advised:
+            continue
         harm = advised[number][0]
         state = "act" if harm >= 0.1 else "watch" if harm >= 0.01 else "fine"
         state = "cannot" if scenes[number].missing or not scenes[number].models else state

@@ -23,7 +23,7 @@ from pipeline.quantities import Array, G
 from pipeline.resources import resource
 from tests.soak import SOAK
 
-ROWS, MOTIONS = int(os.environ.get("KOUROS_ROWS", "20")), 6
+ROWS, MOTIONS = int(os.environ.get("KOUROS_ROWS", "12")), 6
 """Objects under each motion; `make soak` takes forty."""
 
 

@@ -39,6 +39,7 @@ files = ["CI.CLC..HNE.mseed", "CI.CLC..HNN.mseed"]
 response = "CI.CLC.xml"
 processed = false
 highpass_hz = 0.1
+window_s = [30.0, 60.0]
 vertical = "absent"
 source = "a test"
 licence = "none"

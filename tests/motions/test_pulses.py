@@ -16,6 +16,7 @@ from pipeline.motions.pulses import (
 from pipeline.records import Motion
 from pipeline.resources import resource
 from tests.motions.formats.conftest import agency_file
+from tests.soak import some
 
 __all__ = ["agency_file"]
 
@@ -84,8 +85,10 @@ def integrate_row(a):
     return v[0], u[0]
 
 
-@pytest.mark.parametrize("period", [0.5, 1.0, 3.0, 6.0])
-@pytest.mark.parametrize(("cycles", "phase"), [(1.5, 0.0), (1.5, np.pi / 2), (2.0, np.pi / 2)])
+@pytest.mark.parametrize(
+    ("period", "cycles", "phase"),
+    some(((p, *shape) for p in (0.5, 1.0, 3.0, 6.0) for shape in ((1.5, 0.0), (1.5, np.pi / 2), (2.0, np.pi / 2))), 6),
+)
 def test_mavroeidis_papageorgiou_pulse_is_found(period, cycles, phase):
     """Tp within 10 % of the period that the pulse was made with, its direction within a degree, its place within Tp/4.
 

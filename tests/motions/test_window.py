@@ -17,7 +17,7 @@ from pipeline.motions.earthquakes import AFTER, BEFORE, earthquakes, window_of
 from pipeline.motions.entries import entries
 from pipeline.motions.intensity import measures
 from pipeline.motions.parts import CHUNK, MARGIN, scan, whole
-from tests.soak import SOAK
+from tests.soak import SOAK, some
 
 from .conftest import DT, tone
 
@@ -82,8 +82,8 @@ def test_a_window_of_a_day_is_that_window_alone(tmp_path, write_manifest):
 
 
 def test_a_window_of_a_day_unpacks_the_window_and_its_margins(tmp_path, write_manifest, monkeypatch):
-    """Counted where samples are unpacked: 400 s and 300 s on both sides, of 24 hours."""
-    write(tmp_path, np.tile(shaken(3600.0, 1800.0), 24))
+    """Counted where samples are unpacked: 400 s and 300 s on both sides, of 24 hours; of four every day."""
+    write(tmp_path, np.tile(shaken(3600.0, 1800.0), 24 if SOAK else 4))
     unpacked = []
     original = obspy.read
 
@@ -100,10 +100,11 @@ def test_a_window_of_a_day_unpacks_the_window_and_its_margins(tmp_path, write_ma
     assert needed <= sum(unpacked) <= 1.01 * needed
 
 
+@pytest.mark.long("test_a_window_of_a_day_unpacks_the_window_and_its_margins")
 def test_the_memory_of_a_day_is_that_of_its_window(tmp_path, write_manifest):
     """Each in a process of its own: 24 hours are 26 million samples, 200 MB as numbers, 8 GB when processed.
 
-    Every day it is an eighth of that, of which still the processing alone is far beyond what is granted.
+    But for `make soak` it is an eighth of that, of which still the processing alone is far beyond what is granted.
     """
     day = np.tile(shaken(3600.0, 1800.0), 24 if SOAK else 3)
     write(tmp_path, day)
@@ -288,7 +289,7 @@ def test_a_scan_says_what_reading_says(tmp_path):
             parts_module.CHUNK = CHUNK
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", some(range(40), 20))
 def test_damaged_continuous_data_is_refused_or_read(tmp_path, write_manifest, seed):
     """Bytes overwritten, cut out or doubled anywhere: a motion of numbers or a refusal, and nothing else."""
     write(tmp_path, shaken(600.0, 200.0))

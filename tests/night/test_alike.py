@@ -28,6 +28,7 @@ from pipeline.records import Assessment, Furniture, Item, Problem, Provenance, S
 from pipeline.records.scene import Origin
 from pipeline.settings import load_settings
 from tests.museum import found, museum_of, night, vases, write_collection
+from tests.night.changing import leave_out_pages
 from tests.soak import SOAK
 
 pytestmark = pytest.mark.slow_file
@@ -35,6 +36,12 @@ pytestmark = pytest.mark.slow_file
 CUP = Item(
     "1", "Room 1", title="Cup", object_name="cup", medium="earthenware", height_m=0.1, width_m=0.08, depth_m=0.08
 )
+
+
+@pytest.fixture(autouse=True)
+def without_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out what costs most of a small night, and is looked at elsewhere."""
+    leave_out_pages(monkeypatch)
 
 
 def like(**changes: object) -> object:

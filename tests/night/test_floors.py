@@ -16,11 +16,18 @@ from pipeline.settings import Settings, SettingsError, load_settings
 from pipeline.store.runs import load_run
 from pipeline.tools.doctor import diagnose
 from tests.museum import SILENT, on_the_floor, own_site, workspace
+from tests.night.changing import leave_out_pages
 
 BASE = "".join(f'[columns.base_{side}_m]\ncolumn = "{side}_m"\nunit = "m"\n' for side in ("width", "depth"))
 """What it stands on is as wide as it is."""
 
 SITE = SiteTable(name="Test", latitude=0.0, longitude=0.0)
+
+
+@pytest.fixture(autouse=True)
+def without_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out what costs most of a small night, and is looked at elsewhere."""
+    leave_out_pages(monkeypatch)
 
 
 def pulses(folder: Path, *peaks: float, combine: str = "max", floors: str = "") -> Path:

@@ -22,6 +22,7 @@ from pipeline.report.errors import ReportWarning
 from pipeline.settings import DisplaySettings, Floors, Settings, load_settings
 from pipeline.store.tables import RESULT
 from tests.museum import SILENT, found, museum_of, night, vases, write_collection
+from tests.soak import some
 
 pytestmark = pytest.mark.slow_file
 
@@ -120,7 +121,7 @@ def test_a_result_that_is_there_is_taken_up_by_a_run_that_was_cut_off(settings: 
     assert found(again).assessments == found(settings).assessments
 
 
-@pytest.mark.parametrize("damage", [{"found": b"damaged"}, {"outline": "[]"}, {"made": "2000-01-01"}, None])
+@pytest.mark.parametrize("damage", some([{"found": b"damaged"}, {"outline": "[]"}, {"made": "2000-01-01"}, None], 2))
 def test_a_result_that_is_damaged_or_lost_is_found_again(damage: dict[str, object] | None, tmp_path: Path) -> None:
     """Noticed where it is read: when its page is drawn again."""
     made = museum_of(tmp_path / "damaged", vases(1, 4))

@@ -27,6 +27,7 @@ from pipeline.settings import KEPT, Retention, Settings
 from pipeline.store.runs import commit_run, list_runs
 from pipeline.store.sound import SELECTION
 from tests.report import builder
+from tests.soak import SOAK
 
 NOW = datetime.now(UTC)
 
@@ -211,9 +212,9 @@ def test_nothing_is_removed_while_a_run_is_at_work(tmp_path: Path) -> None:
 
 
 def test_at_random_the_last_good_run_always_stays(tmp_path: Path) -> None:
-    """A dozen museums of any history and any limits."""
+    """A dozen museums of any history and any limits, every day half of them."""
     chance = random.Random(11)
-    for number in range(12):
+    for number in range(12 if SOAK else 6):
         limits = Retention(
             runs=chance.choice([0, 1, 2]), reports=chance.choice([0, 1, 2]), days=chance.choice([0.0, 0.1, 2.0])
         )

@@ -27,6 +27,7 @@ from pipeline.report.pages.errand_views import SHOWN, number, plan_page, plan_vi
 from pipeline.tables import table
 from tests.report.builder import HOSTILE
 from tests.report.test_language import catalogue
+from tests.soak import SOAK
 
 from .objects import advised, collection
 
@@ -153,7 +154,10 @@ def test_all_words_of_the_page_can_be_translated() -> None:
     write_mo(file, catalogue())
     file.seek(0)
     tongue = Language("it", GNUTranslations(file))
-    found = [replace(one, measure_title=TITLES[one.measure]) for one in collection(400, 9, galleries=8, removed=0.1)]
+    found = [
+        replace(one, measure_title=TITLES[one.measure])
+        for one in collection(400 if SOAK else 150, 9, galleries=8, removed=0.1)
+    ]
     for limits in (EffortLimits(), EffortLimits(90.0, 4_000.0, {"handler": 20.0, "engineer": 50.0})):
         page = html.fromstring(plan_page(planned(found, limits), HEAD, tongue))
         for element in page.xpath("//head|//style|//bdi|//*[@class='code']"):

@@ -42,7 +42,9 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
         def get(self, url: str) -> None:
             """On a busy machine the driver's own wait now and then ends while the page is still being read."""
             super().get(url)
-            WebDriverWait(self, 60.0).until(lambda c: c.execute_script("return document.readyState") == "complete")
+            WebDriverWait(self, 60.0, 0.05).until(
+                lambda c: c.execute_script("return document.readyState") == "complete"
+            )
 
     options = Options()
     options.binary_location = str(CHROMIUM)

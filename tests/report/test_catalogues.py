@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,7 @@ LETTERS = {"el": "[Α-Ωα-ω]", "es": "[áéíóúñ]", "it": "[àèéìòù]",
 """Letters without which no page of a language is."""
 
 
+@cache
 def catalogue_of(code: str) -> Catalog:
     file = resource("templates").joinpath("catalogues", code, "LC_MESSAGES", f"{DOMAIN}.po")
     with file.open("rb") as stream:

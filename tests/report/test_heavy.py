@@ -76,7 +76,7 @@ def test_it_can_be_used_soon(browser: Chrome, page: Path, record_property: pytes
 def test_sorting_and_filtering(browser: Chrome, page: Path) -> None:
     browser.get(page.as_uri())
     # On a machine that is busy the page is there before its script has run.
-    WebDriverWait(browser, 20.0).until(lambda b: len(b.find_elements("css selector", ".list thead button")) == 5)
+    WebDriverWait(browser, 20.0, 0.05).until(lambda b: len(b.find_elements("css selector", ".list thead button")) == 5)
     buttons = browser.find_elements("css selector", ".list thead button")
     before = browser.execute_script("return [...document.querySelectorAll('.list tbody tr')].map(r => r.dataset.p)")
     buttons[2].click()

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
+from functools import cache
 from gettext import GNUTranslations
 from io import BytesIO
 from pathlib import Path
@@ -84,7 +85,8 @@ NAMES = (
 """Names of fields, parameters and models in the builder's record: the pages look up the plain words of any name."""
 
 
-def phrases(*further: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+@cache
+def phrases(*further: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """All phrases that a translation needs, as babel finds them by the file that the museum's translator uses.
 
     further : names of folders in which it looks besides those of the report
@@ -94,9 +96,9 @@ def phrases(*further: str) -> Iterator[tuple[str, tuple[str, ...]]]:
         methods, options = parse_mapping_cfg(file)
     folders = {"templates", "pipeline", "report", "pages", "plots", "files", "tables", "models", "mitigate", "measures"}
     folders |= {"analysis", "fragility", *further}
-    for found in extract_from_dir(root, methods, options, directory_filter=lambda at: Path(at).name in folders):
-        message = found[2]
-        yield (message, ()) if isinstance(message, str) else (message[0], tuple(message[1:]))
+    found = extract_from_dir(root, methods, options, directory_filter=lambda at: Path(at).name in folders)
+    messages = (one[2] for one in found)
+    return tuple((said, ()) if isinstance(said, str) else (said[0], tuple(said[1:])) for said in messages)
 
 
 def pseudo(phrase: str) -> str:

@@ -398,8 +398,11 @@ def test_the_summary_is_short_and_says_the_numbers(records: list[Inspection]) ->
 
 @pytest.fixture(scope="module")
 def demo_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """With spectra of few periods: those of the synthetic record above are whole."""
     folder = tmp_path_factory.mktemp("demo")
-    return render_record(inspect(resource("site_motions", "demo")), folder / "records.html", Units())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("pipeline.motions.inspection.SPECTRUM_POINTS", 12)
+        return render_record(inspect(resource("site_motions", "demo")), folder / "records.html", Units())
 
 
 def test_the_demonstration_site_is_raw_and_its_axes_are_north_and_east(demo_page: Path) -> None:

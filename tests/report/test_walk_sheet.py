@@ -28,6 +28,7 @@ from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, numbers
 from pipeline.report.render import pages_of
 from pipeline.report.text import cased
 from pipeline.report.units import Units, inches
+from tests.soak import SOAK
 
 from . import builder
 from .shown import shown
@@ -143,8 +144,8 @@ def test_with_nothing_to_do_the_sheet_says_so(tmp_path: Path) -> None:
 def test_hostile_texts_break_no_sheet(tmp_path: Path) -> None:
     texts = [
         *builder.HOSTILE.values(),
-        "x" * 10_000,
-        "a b " * 5_000,
+        "x" * (10_000 if SOAK else 3_000),
+        "a b " * (5_000 if SOAK else 1_000),
         "\x00\x1b[31m",
         "W" * 600,
         "\u202e" * 50,

@@ -13,7 +13,7 @@ import openpyxl
 from pipeline.collection.mapping import PRESETS
 from pipeline.collection.record import KINDS
 
-DAILY = 150
+DAILY = 100
 ROWS = int(os.environ.get("KOUROS_HOSTILE", str(DAILY)))
 """Two for each payload in each field; `make soak` takes a thousand."""
 

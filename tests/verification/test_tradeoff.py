@@ -27,8 +27,8 @@ SILENT = Console(quiet=True)
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:
-    """Ten seconds of noise of 0.5 to 8 Hz in both directions, strong enough to move most things."""
-    x, y = (band_limited_random(0.2 * G, 0.5, 8.0, 10.0, seed, dt=0.01).acceleration[0] for seed in (1, 2))
+    """Six seconds of noise of 0.5 to 8 Hz in both directions, strong enough to move most things."""
+    x, y = (band_limited_random(0.2 * G, 0.5, 8.0, 6.0, seed, dt=0.01).acceleration[0] for seed in (1, 2))
     return Motion(0.01, np.array([x, y, 0.2 * x]), "noise")
 
 

@@ -13,6 +13,7 @@ from pipeline.collection.guess import guess
 from pipeline.collection.reading import read_items
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.xlsx import first_rows, read_sheet, visible_sheets
+from tests.soak import SOAK
 
 SPACES = " ".join(
     f'xmlns:{name}="urn:oasis:names:tc:opendocument:xmlns:{name}:1.0"' for name in ("office", "table", "text", "style")
@@ -165,5 +166,6 @@ def test_what_cannot_be_read_is_said(stream: io.BytesIO, said: str) -> None:
 
 
 def test_a_million_repeated_rows_that_hold_nothing_cost_nothing() -> None:
-    told = read(book(sheet("s", row(cell("n")), row(BLANK, many=1_000_000), row(cell("5")))))
-    assert [one.line for one in told] == [1, 1_000_002]
+    many = 1_000_000 if SOAK else 100_000
+    told = read(book(sheet("s", row(cell("n")), row(BLANK, many=many), row(cell("5")))))
+    assert [one.line for one in told] == [1, many + 2]
