@@ -3,7 +3,8 @@ PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.kouros-installed
 PEERS := .venv/.kouros-peers
-BOTH_CORES := $(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
+# Three, for browsers, servers and nights that are waited for leave a fifth of two cores idle.
+BOTH_CORES := $(BIN)/python -m pytest --numprocesses 3 --dist loadfile --no-loadscope-reorder
 
 .PHONY: demo test test-long lint rules types ready docs catalogues bench soak audit airflow check-browser clean
 
@@ -45,7 +46,7 @@ rules: $(STAMP)
 types: $(STAMP)
 	$(BIN)/mypy
 
-# What both workers of the tests would else make at once: it takes as long as types and rules, which the other core checks.
+# What all workers of the tests would else make at once: it takes as long as types and rules, which the other core checks.
 ready: $(STAMP)
 	@PYTHONDONTWRITEBYTECODE= $(BIN)/python -m tests.ready
 

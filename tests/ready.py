@@ -1,4 +1,4 @@
-"""Makes what both workers of `make test` would else make at once: bytecode of the tests, and the compiled kernels.
+"""Makes what all workers of `make test` would else make at once: bytecode of the tests, and the compiled kernels.
 
 It runs beside the checks of types and rules, which take as long; where both are there it takes seconds.
 """
