@@ -1,6 +1,7 @@
 # Everything runs in .venv, made from constraints.txt; `make demo` and `make test` need nothing done before.
 PYTHON ?= python3
 BIN := .venv/bin
+BASE := .venv/.kouros-runs
 STAMP := .venv/.kouros-installed
 PEERS := .venv/.kouros-peers
 # Three, for browsers, servers and nights that are waited for leave a fifth of two cores idle.
@@ -8,9 +9,16 @@ BOTH_CORES := $(BIN)/python -m pytest --numprocesses 3 --dist loadfile --no-load
 
 .PHONY: demo test test-long lint rules types ready docs catalogues bench soak audit airflow check-browser clean
 
-$(STAMP): pyproject.toml constraints.txt
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+
+# What a museum installs. The demonstration needs no more, and who only looks at that does not wait for what tests need.
+$(BASE): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || { echo "python3 has no venv module: apt-get install python3-venv"; exit 1; }
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,docs]'
+	$(INSTALL) --editable .
+	@touch $(BASE)
+
+$(STAMP): $(BASE)
+	$(INSTALL) --editable '.[dev,docs]'
 	@touch $(STAMP)
 
 # One by one: a peer that has no wheel for this machine is left out, and the benchmark says so.
@@ -18,11 +26,11 @@ $(PEERS): $(STAMP)
 	@$(BIN)/python -c "import tomllib; from pathlib import Path; \
 	print(*tomllib.loads(Path('pyproject.toml').read_text())['project']['optional-dependencies']['peers'], sep='\n')" | \
 	while read -r peer; do \
-	  $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt "$$peer" || \
+	  $(INSTALL) "$$peer" || \
 	  echo "$$peer cannot be installed here"; done
 	@touch $(PEERS)
 
-demo: $(STAMP)  ## the whole job on the bundled collection and record; ends with the path of the report
+demo: $(BASE)  ## the whole job on the bundled collection and record; ends with the path of the report
 	$(BIN)/kouros demo
 
 test: $(STAMP) check-browser  ## lint, types, floors and every test but those that are long and show what others show
