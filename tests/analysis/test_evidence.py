@@ -50,6 +50,7 @@ def drawn(one: Labelled) -> str:
     return by_number[one.museum, one.item.object_number]
 
 
+@pytest.mark.long("test_museums_that_were_labelled_before_they_were_read")
 def test_a_museum_that_was_left_out() -> None:
     """Of the simple random sample of each museum: class right in 97 %, manner of support in 97 %.
 
@@ -63,6 +64,7 @@ def test_a_museum_that_was_left_out() -> None:
     assert np.mean([SUPPORT[taken[at]] == SUPPORT[objects[at].object_class] for at in plain]) >= 0.955
 
 
+@pytest.mark.long("test_museums_that_were_labelled_before_they_were_read")
 def test_hard_objects_of_a_museum_that_was_left_out() -> None:
     """Of all draws, in which solid and rare things are many times as frequent as in life: 90 % and 94 %."""
     objects, found = unseen()
@@ -72,6 +74,7 @@ def test_hard_objects_of_a_museum_that_was_left_out() -> None:
     assert np.mean([SUPPORT[a] == SUPPORT[b] for a, b in pairs]) >= 0.92
 
 
+@pytest.mark.long("test_museums_that_were_labelled_before_they_were_read")
 def test_where_it_says_ninety_percent_it_is_right_in_ninety() -> None:
     """Calibration on museums left out: of those said to be as likely as that, as many are right, within 4 %."""
     objects, found = unseen()
@@ -83,6 +86,7 @@ def test_where_it_says_ninety_percent_it_is_right_in_ninety() -> None:
         assert np.mean(right[some]) >= np.mean(sure[some]) - 0.04, (low, high)
 
 
+@pytest.mark.long("test_museums_that_were_labelled_before_they_were_read")
 def test_no_museum_is_sure_where_it_is_wrong() -> None:
     """Of each museum left out by itself, at least 90 % of those said to be as likely as that."""
     objects, found = unseen()
@@ -248,7 +252,7 @@ def test_chances_add_up_to_one_and_the_class_is_the_likeliest() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "x" * (1_000_000 if SOAK else 100_000),
+        pytest.param("x" * (1_000_000 if SOAK else 100_000), marks=pytest.mark.long("test_odd_texts_are_read")),
         "a " * (100_000 if SOAK else 20_000),
         "\x00\ud7ff\u202e\u0301" * 50,
         "花瓶",

@@ -265,6 +265,7 @@ def test_off_level_a_block_slides_as_newmark_says() -> None:
     assert leaning.v_max == pytest.approx(push * seconds, rel=2e-3)
 
 
+@pytest.mark.long("test_a_verdict_holds_under_every_variant_of_the_furniture")
 def test_few_variants_come_close_to_a_fine_grid() -> None:
     """Of 41 frequencies by 4 directions of the lean none pushes harder by a sixth, and none moves a slide by a quarter.
 
@@ -353,7 +354,13 @@ def found_of(scene: Scene) -> list[Finding]:
 
 
 @pytest.mark.parametrize("combine", ["max", "mean"])
-@pytest.mark.parametrize("fidelity", ["auto", "history"])
+@pytest.mark.parametrize(
+    "fidelity",
+    [
+        "auto",
+        pytest.param("history", marks=pytest.mark.long("test_a_verdict_holds_under_every_variant_of_the_furniture")),
+    ],
+)
 def test_a_verdict_holds_under_every_variant_of_the_furniture(combine: str, fidelity: str) -> None:
     """Each variant is run by itself, as a floor of its own: passes if all pass, fails if all fail, else it is open.
 

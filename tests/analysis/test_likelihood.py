@@ -42,6 +42,8 @@ from pipeline.records import (
 from tests.museum import carnegie
 from tests.soak import SOAK, some
 
+LONG = pytest.mark.long("test_a_block_under_a_rectangular_pulse_leaves_its_place_as_often_as_the_closed_form_says")
+
 MANY = Sampling(4096, 2.0)
 """As many samples, whatever the word: of none is that certain."""
 
@@ -73,7 +75,9 @@ def pulse(push: float, seconds: float) -> Motion:
     return Motion(0.001, np.vstack([x, np.zeros((2, x.size))]), "pulse")
 
 
-@pytest.mark.parametrize("room", some([0.02, 0.05, 0.12], 2))
+@pytest.mark.parametrize(
+    "room", [pytest.param(room, marks=LONG if at else []) for at, room in enumerate(some([0.02, 0.05, 0.12], 2))]
+)
 def test_a_block_under_a_rectangular_pulse_leaves_its_place_as_often_as_the_closed_form_says(room: float) -> None:
     """A pulse of A for T moves it by (A - mu g) A T^2 / (2 mu g), more than r where mu < A^2 T^2 / (g (A T^2 + 2 r)).
 
@@ -99,6 +103,7 @@ def test_a_block_under_a_rectangular_pulse_leaves_its_place_as_often_as_the_clos
     assert one.harm == Harm.LEAVES
 
 
+@pytest.mark.long("test_a_block_under_a_rectangular_pulse_leaves_its_place_as_often_as_the_closed_form_says")
 def test_the_stated_error_is_what_probabilities_scatter_by() -> None:
     """Jeffreys's standard error at 256 samples, against what 4,096 say: within it in two of three cases at least.
 
@@ -205,6 +210,7 @@ def falling(scenes: list[Scene], motion: Motion, angle: float, rng: np.random.Ge
     return fell, away | (slid["displacement"].to_numpy() > room)
 
 
+@pytest.mark.long("analysis/test_likely_classes::test_what_another_object_may_be_changes_no_digit")
 def test_neither_order_nor_company_changes_a_digit() -> None:
     scenes = scenes_on_display()[:: 46 if SOAK else 92]
     usual = Sampling()

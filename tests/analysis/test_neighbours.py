@@ -129,6 +129,7 @@ def test_uncertain_frictions_span_a_range() -> None:
     assert found.high > 0.0
 
 
+@pytest.mark.long("test_equal_pendulums_swing_as_one")
 def test_pendulums_out_of_step_come_closer_than_either_moves() -> None:
     """Truth: both pendulums integrated independently (scipy, DOP853), for a minute after the record.
 

@@ -105,9 +105,8 @@ def blocks(frictions: Array) -> list[Scene]:
     ]
 
 
-@pytest.mark.parametrize(
-    "combine", [pytest.param("max", marks=pytest.mark.long("test_sliding_right_beside_its_capacity")), "mean"]
-)
+@pytest.mark.long("test_swings_right_beside_their_capacity")
+@pytest.mark.parametrize("combine", COMBINES)
 def test_sliding_right_beside_its_capacity(motions: tuple[Motion, ...], charts: ChartCache, combine: str) -> None:
     """240 measured frictions: each verdict is that of the history, although most histories are never run."""
     level = LevelMotions("design", combine, motions)

@@ -169,6 +169,7 @@ def test_stronger_shaking_brings_more_down(museum: Path) -> None:
     assert fallen[-1] > fallen[0]
 
 
+@pytest.mark.long("event/test_watch::test_a_record_waits_for_its_stationxml_and_a_folder_is_one_earthquake")
 def test_the_own_record_is_believed_most(museum: Path, tmp_path: Path) -> None:
     """The record of the demonstration, counts with StationXML, of the main shock: less than half of it."""
     site = resource("site_motions", "demo")

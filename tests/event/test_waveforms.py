@@ -49,7 +49,7 @@ def test_under_the_motions_of_the_night_objects_do_what_they_did_in_the_night(mu
     assert set(under(workspace, pages, ["1"] * 20 + ["2"], shaken, sampling, perf_counter() - 1.0)) == {"1"}
 
 
-@pytest.mark.long("event/test_command::test_the_own_record_is_believed_most")
+@pytest.mark.long("event/test_watch::test_a_record_waits_for_its_stationxml_and_a_folder_is_one_earthquake")
 def test_the_own_record_is_run_whole(museum: Path) -> None:
     site = resource("site_motions", "demo")
     records = [*sorted(site.glob("*.mseed")), site / "CI.CLC.xml"]

@@ -105,6 +105,7 @@ def test_masses_are_those_of_such_things(scenes: Mapping[str, Scene]) -> None:
     assert all_of_them - about == {"A.09", "C.04", "P.02"}
 
 
+@pytest.mark.long("mitigate/test_four_museums::test_nothing_that_harms_is_advised")
 def test_nothing_that_harms_is_advised(advised: Mapping[str, tuple[float, list[Recommendation]]]) -> None:
     wrong = {}
     for number, row in expected().items():
@@ -117,6 +118,7 @@ def test_nothing_that_harms_is_advised(advised: Mapping[str, tuple[float, list[R
     assert wrong == {}
 
 
+@pytest.mark.long("mitigate/test_four_museums::test_states_are_those_that_an_engineer_expects")
 def test_states_are_those_that_an_engineer_expects(
     scenes: Mapping[str, Scene], advised: Mapping[str, tuple[float, list[Recommendation]]]
 ) -> None:

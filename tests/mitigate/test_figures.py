@@ -121,6 +121,7 @@ def test_forces_on_fixings_are_those_of_statics(motions: Sequence[Motion], which
     assert advice.parameters["moment"] == pytest.approx(moment, rel=1e-9)
 
 
+@pytest.mark.long("analysis/test_furniture::test_a_case_of_6_hz_takes_sliding_from_3_to_11_cm")
 def test_a_showcase_multiplies_the_force_as_an_oscillator_does(motions: Sequence[Motion]) -> None:
     """6 Hz and 5 %, the best estimates of furniture.csv: no resonance at the worst of 3 to 12 Hz and 3 %."""
     motion = motions[0]
@@ -130,7 +131,10 @@ def test_a_showcase_multiplies_the_force_as_an_oscillator_does(motions: Sequence
 
 
 @pytest.mark.parametrize("which", [0, 1])
-@pytest.mark.parametrize("friction", [0.12, 0.2])
+@pytest.mark.parametrize(
+    "friction",
+    [0.12, pytest.param(0.2, marks=pytest.mark.long("test_room_is_what_an_implicit_integration_slides"))],
+)
 def test_room_is_what_an_implicit_integration_slides(motions: Sequence[Motion], which: int, friction: float) -> None:
     motion = motions[which].scaled(1.0 if which == 0 else 0.7, "so that a display has the room")
     far = slid(motion, friction)
@@ -140,6 +144,7 @@ def test_room_is_what_an_implicit_integration_slides(motions: Sequence[Motion], 
     assert far <= advice.parameters["clearance"] <= 1.1 * far + 0.011
 
 
+@pytest.mark.long("test_room_is_what_an_implicit_integration_slides")
 @pytest.mark.parametrize(("which", "length"), [pytest.param(0, 0.6, marks=soaked), (1, 2.0)])
 def test_what_hangs_from_above_swings_as_a_string(motions: Sequence[Motion], which: int, length: float) -> None:
     """A chandelier of 120 kg may swing in a hall: the largest distance of its middle, and a tenth more."""

@@ -101,6 +101,7 @@ def test_an_isolator_that_resonates_at_another_level_is_not_advised(motion: Moti
     assert any(text.startswith("Horizontal isolator: ") for text in advice["strong"].rejected)
 
 
+@pytest.mark.long("mitigate/test_demo::test_pictures_fixed_to_the_wall_need_the_force_of_their_mass")
 def test_a_hung_picture_is_fixed_for_the_strongest_push(motion: Motion) -> None:
     """The force of a second fixing is that of the strong level, also where the weak one is asked about."""
     weak, strong = motion.scaled(3.0, "weak"), motion.scaled(4.0, "strong")

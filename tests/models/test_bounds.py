@@ -22,6 +22,8 @@ from tests.soak import some
 
 pytestmark = pytest.mark.slow_file
 
+LONG = pytest.mark.long("test_the_reference_lies_between_the_bounds_under_a_real_record")
+
 BOUNDED = [m.name for m in MODELS if m.bound is not None]
 ROUNDING = 1e-12
 
@@ -107,7 +109,7 @@ def test_the_reference_lies_between_the_bounds(name: str, seed: int) -> None:
     enclosed(own, respond(name, motion, fidelity="reference", angle=angle, tail=tail, **parameters), name)
 
 
-@pytest.mark.parametrize("level", [0.1, 0.3, 0.7])
+@pytest.mark.parametrize("level", [pytest.param(0.1, marks=LONG), 0.3, pytest.param(0.7, marks=LONG)])
 @pytest.mark.parametrize("name", ["sliding", "friction_isolator", "rocking", "standing"])
 def test_the_reference_lies_between_the_bounds_under_a_real_record(name: str, level: float) -> None:
     """The demonstration's strongest 20 s, three components, at three levels of the peak resultant."""

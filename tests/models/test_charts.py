@@ -21,6 +21,8 @@ from pipeline.records import Columns, Motion, Numerics
 from pipeline.resources import resource
 from tests.soak import SOAK
 
+LONG = pytest.mark.long("test_the_error_reported_covers_the_true_one")
+
 CASES = {
     "sliding": ({}, 0.0),
     "sliding, one direction": ({"directions": 1.0}, 0.0),
@@ -48,7 +50,11 @@ def counted(values: list[int], result: Array) -> Array:
 
 
 @pytest.mark.parametrize("case", list(CASES))
-@pytest.mark.parametrize("motion", [random_motion(3), random_motion(8, n=1500, pga=7.0)], ids=lambda m: m.name)
+@pytest.mark.parametrize(
+    "motion",
+    [random_motion(3), pytest.param(random_motion(8, n=1500, pga=7.0), marks=LONG)],
+    ids=lambda m: m.name,
+)
 def test_the_error_reported_covers_the_true_one(case: str, motion: Motion) -> None:
     """At 1,000 random points in 99 % at least, against `history`, which the nodes were run at."""
     name = case.split(",", maxsplit=1)[0]

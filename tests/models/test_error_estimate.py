@@ -23,6 +23,8 @@ from pipeline.quantities import Array, G
 from pipeline.resources import resource
 from tests.soak import SOAK
 
+LONG = pytest.mark.long("test_the_estimated_error_covers_the_true_one")
+
 ROWS, MOTIONS = int(os.environ.get("KOUROS_ROWS", "12")), 6
 """Objects under each motion; `make soak` takes forty."""
 
@@ -109,7 +111,11 @@ RECORDS = {
 @pytest.mark.parametrize(
     ("name", "kind"),
     # Every day each model with half of the records, in turn.
-    [pair for at, pair in enumerate(product(CASES, sorted(RECORDS))) if SOAK or (at + at // len(RECORDS)) % 2 == 0],
+    [
+        pytest.param(name, kind, marks=LONG if kind.startswith("long") else [])
+        for at, (name, kind) in enumerate(product(CASES, sorted(RECORDS)))
+        if SOAK or (at + at // len(RECORDS)) % 2 == 0
+    ],
 )
 def test_the_estimated_error_covers_the_true_one(name: str, kind: str) -> None:
     """|history - reference| <= error, but for 1 case of 100, in records of any length, step and strength.

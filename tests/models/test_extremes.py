@@ -28,6 +28,8 @@ from tests.soak import SOAK
 
 pytestmark = pytest.mark.slow_file
 
+LONG = pytest.mark.long("test_the_self_test_of_the_numerics")
+
 LIMIT = 60.0
 """Seconds after which a case hangs, compilation excepted; on an idle machine all take well below ten."""
 START = 60.0
@@ -90,7 +92,13 @@ def asked_above(case: numerics.SelfTestCase) -> bool:
 
 
 @pytest.mark.parametrize(
-    "case", [case for case in numerics.CASES if not asked_above(case)], ids=lambda case: f"{case.what}; {case.truth}"
+    "case",
+    [
+        pytest.param(case, marks=LONG if case.what == "a million objects" else [])
+        for case in numerics.CASES
+        if not asked_above(case)
+    ],
+    ids=lambda case: f"{case.what}; {case.truth}",
 )
 def test_the_self_test_of_the_numerics(case: numerics.SelfTestCase) -> None:
     """The very cases that `kouros check --numerics` runs: each names its truth and its limit."""

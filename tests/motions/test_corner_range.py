@@ -19,6 +19,8 @@ __all__ = ["agency", "agency_file", "site"]
 
 DT = 0.01
 
+LONG = pytest.mark.long("test_the_range_is_that_of_the_record_processed_at_other_corners")
+
 
 def test_a_tone_at_the_corner_has_the_filters_gain():
     """Of two poles forwards and backwards: 1 / (1 + (fc/f)^4), which is 16/17, 1/2 and 1/17."""
@@ -45,12 +47,18 @@ def test_what_is_written_is_read():
 
 @pytest.mark.parametrize(
     ("name", "changes"),
-    some(
-        product(
-            ["weitchpec", "redwood"], [{}, {"window_s": [5.0, 30.0], "accept": {"cut_off": "a test"}}, {"scale": 2.5}]
-        ),
-        3,
-    ),
+    [
+        pytest.param(*case, marks=LONG if at else [])
+        for at, case in enumerate(
+            some(
+                product(
+                    ["weitchpec", "redwood"],
+                    [{}, {"window_s": [5.0, 30.0], "accept": {"cut_off": "a test"}}, {"scale": 2.5}],
+                ),
+                3,
+            )
+        )
+    ],
 )
 def test_the_range_is_that_of_the_record_processed_at_other_corners(site, name, changes):
     file = site(name, highpass_hz=0.15, **changes)

@@ -196,7 +196,13 @@ def test_noise_where_an_event_has_nothing_does_not_take_its_waves(second):
     assert pgv(motion, corner.frequency) == pytest.approx(true, rel=0.01)
 
 
-@pytest.mark.parametrize("seed", some(range(8), 4))
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(seed, marks=pytest.mark.long("test_the_corner_does_not_hang_on_the_window") if seed else [])
+        for seed in some(range(8), 4)
+    ],
+)
 def test_the_corner_does_not_hang_on_the_window(seed):
     """Windows of 115 to 150 s about one earthquake in noise: a factor of two about the middle, 0.5 % in the PGV.
 

@@ -33,6 +33,9 @@ REDWOOD = {
     "np01002r_4225b_u.smc": {"axis": "z"},
 }
 WEITCHPEC = {"HNE": {"axis": "x"}, "HNN": {"axis": "y"}, "HNZ": {"axis": "z"}}
+CHOSEN = pytest.mark.long("test_with_a_corner_chosen_without_the_agency")
+WINDOW = pytest.mark.long("test_the_corner_does_not_hang_on_the_window")
+
 RECORDS = {"redwood": (list(REDWOOD), REDWOOD), "weitchpec": (["CE89146.V1"], WEITCHPEC)}
 
 
@@ -118,7 +121,10 @@ def test_with_the_agencys_own_corners(site, agency, name):
     judge(motion, pga, pgv)
 
 
-@pytest.mark.parametrize(("name", "pre_event"), [("redwood", None), ("weitchpec", None), ("weitchpec", 20.0)])
+@pytest.mark.parametrize(
+    ("name", "pre_event"),
+    [("redwood", None), pytest.param("weitchpec", None, marks=CHOSEN), pytest.param("weitchpec", 20.0, marks=CHOSEN)],
+)
 def test_with_a_corner_chosen_without_the_agency(site, agency, name, pre_event):
     """The film of Redwood City has no pre-event noise: its baseline bends, which the displacement tells.
 
@@ -136,7 +142,13 @@ def test_with_a_corner_chosen_without_the_agency(site, agency, name, pre_event):
     assert f"high-pass corner {corner.frequency:.4g} Hz chosen" in " | ".join(motion.steps)
 
 
-@pytest.mark.parametrize(("end", "begin", "name"), some(product([0.0, 0.15, 0.3], [0.0, 0.15, 0.3], RECORDS), 6))
+@pytest.mark.parametrize(
+    ("end", "begin", "name"),
+    [
+        pytest.param(*case, marks=WINDOW if 0 < at < 5 else [])
+        for at, case in enumerate(some(product([0.0, 0.15, 0.3], [0.0, 0.15, 0.3], RECORDS), 6))
+    ],
+)
 def test_the_corner_does_not_hang_on_the_window(site, name, begin, end):
     """Begun later and ended earlier by shares of what is before and after the strong shaking.
 

@@ -190,6 +190,7 @@ def test_earthquakes_are_found_where_they_were_put(tmp_path):
     assert earthquakes(scan(tmp_path / "HNE.mseed")) == []
 
 
+@pytest.mark.long("test_pieces_of_several_earthquakes_in_one_file")
 def test_several_earthquakes_are_listed_and_one_is_chosen(tmp_path, write_manifest):
     write(tmp_path, shaken(3000.0, 500.0, 2000.0))
     folder = write_manifest(**COMMON)

@@ -13,6 +13,9 @@ from tests.soak import some
 
 from .conftest import DT, tone
 
+LONG = pytest.mark.long("test_bit_for_bit")
+DAILY = ("filtered", "with an estimated vertical")
+
 N = 12000
 TWO = {"e.mseed": {"axis": "x", "orientation": 90}, "n.mseed": {"axis": "y", "orientation": 0}}
 
@@ -44,7 +47,7 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", some(CASES, 4))
+@pytest.mark.parametrize("case", [pytest.param(case, marks=[] if case in DAILY else LONG) for case in some(CASES, 4)])
 def test_bit_for_bit(three, write_manifest, tmp_path, case):
     three(*map(shaken, (1.0, 2.0, 0.5)))
     folder = write_manifest(**CASES[case])

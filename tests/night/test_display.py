@@ -131,6 +131,7 @@ def test_stores_are_a_section_of_their_own_and_never_mixed_in(tmp_path: Path) ->
     assert "counted apart: 3 objects: 2 to act on" in "\n".join(summary_lines(summary))
 
 
+@pytest.mark.long("night/test_incremental::test_a_night_that_finds_only_what_changed_equals_one_from_nothing")
 def test_with_setting_or_flag_changed_a_night_is_as_one_from_scratch(tmp_path: Path) -> None:
     """Each night of a museum where one thing changed, against the first night of another that was always so."""
     other = [SHOWN.replace("yes", "no"), ROWS[1].replace("no", "yes"), *ROWS[2:]]

@@ -127,6 +127,7 @@ def test_the_mean_of_a_level_decides(tmp_path: Path) -> None:
     assert finding.motion == "pulse 6"  # the one that governs is named all the same
 
 
+@pytest.mark.long("test_the_mean_of_a_level_decides")
 def test_an_object_overturns_when_half_of_the_motions_overturn_it(tmp_path: Path) -> None:
     """An object for which rocking itself is no damage: three of eight pulses throw it over, then four of eight."""
     settings = museum(tmp_path, pulses(tmp_path / "few", *[0.1] * 5, *[1.5] * 3, combine="mean"))

@@ -176,6 +176,7 @@ def test_without_samples_curves_are_those_of_corners(tmp_path: Path) -> None:
     assert "about once in" in text
 
 
+@pytest.mark.long("test_two_levels_make_curves_rates_and_spacings")
 def test_how_a_level_combines_its_motions_leaves_the_curves_alone(tmp_path: Path) -> None:
     """Seven motions: the verdicts of max and mean differ, what single earthquakes do does not."""
     peaks = (0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4)

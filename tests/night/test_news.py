@@ -193,6 +193,7 @@ def load_run_day(index: str) -> str:
     return found[1]
 
 
+@pytest.mark.long("test_each_kind_of_news_is_told_of_its_object")
 def test_a_house_rule_that_moved_an_object_is_named(museum: Path) -> None:
     """Gallery 2 is said to be fastened: what moves there says by which rule, what moves elsewhere would not."""
     rows = [row(f"5.{at}", "Vase", "Gallery 2", *SLENDER) for at in range(3)]

@@ -89,6 +89,7 @@ def settings_are_named(tmp_path: Path, toml: Path) -> None:
     night(tmp_path)
 
 
+@pytest.mark.long("night/test_jobs::test_a_swapped_motion_moves_verdicts_and_is_named")
 def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.MonkeyPatch) -> None:
     manifest, toml = short_site(tmp_path), tmp_path / "kouros.toml"
     # What is compared are the records of nights: what their pages say of it is told in test_news.py.

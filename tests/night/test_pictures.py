@@ -29,6 +29,8 @@ from tests.soak import some
 
 pytestmark = pytest.mark.slow_file
 
+LONG = pytest.mark.long("test_a_figure_is_as_far_off_as_it_says")
+
 
 def curves_of(model: str) -> list[dict[str, float]]:
     """What the curves of a model's figure have fixed."""
@@ -78,7 +80,7 @@ def true(motion: Motion, name: str, at: Array) -> list[Array]:
     ]
 
 
-@pytest.fixture(scope="module", params=["noise", "record"])
+@pytest.fixture(scope="module", params=["noise", pytest.param("record", marks=LONG)])
 def pictured(
     request: pytest.FixtureRequest, motion: Motion, drawn: dict[str, Chart]
 ) -> tuple[Motion, dict[str, Chart]]:
@@ -114,7 +116,13 @@ def test_a_figure_is_as_far_off_as_it_says(pictured: tuple[Motion, dict[str, Cha
     assert np.concatenate(off).max() < 3.0 * PICTURED
 
 
-@pytest.mark.parametrize("name", ["swing", "horizontal_isolator"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("swing", marks=pytest.mark.long("test_what_is_only_drawn_is_integrated_coarsely_and_hardly_off")),
+        "horizontal_isolator",
+    ],
+)
 def test_what_is_only_drawn_is_integrated_coarsely_and_hardly_off(name: str) -> None:
     """Under the demonstration's record, against histories: a tenth of what a picture is told to.
 

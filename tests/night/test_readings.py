@@ -227,7 +227,15 @@ def test_a_database_is_no_other_source(tmp_path: Path) -> None:
     assert (found.rows, found.refused, found.doubtful) == (6, 2, 2)
 
 
-@pytest.mark.parametrize("name", ["carnegie_2000", "met_27_rows_cp1252", "tms_rows_cut_off", "moma_rows"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("carnegie_2000", marks=pytest.mark.long("test_real_files_are_accounted_for")),
+        "met_27_rows_cp1252",
+        "tms_rows_cut_off",
+        "moma_rows",
+    ],
+)
 def test_real_files_are_accounted_for(name: str, tmp_path: Path) -> None:
     """Rows of four real exports: rows, refusals and doubtful objects are those of the reading itself."""
     reading = carnegie() if "carnegie" in name else read(name)
@@ -245,6 +253,7 @@ def test_real_files_are_accounted_for(name: str, tmp_path: Path) -> None:
     assert all((d.row, d.line) == places[d.object_number] for d in listed)
 
 
+@pytest.mark.long("test_each_row_is_named_with_place_field_words_and_remedy")
 def test_tens_of_thousands_of_doubts_make_no_heavy_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The pages show the first rows, whatever order they come in; the list has all, and no cell is a formula.
 

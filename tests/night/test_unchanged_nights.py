@@ -26,6 +26,8 @@ from tests.soak import some
 
 pytestmark = pytest.mark.slow_file
 
+LONG = pytest.mark.long("test_a_result_that_is_damaged_or_lost_is_found_again")
+
 
 def results(settings: Settings) -> int:
     engine = open_database(settings.database)
@@ -121,7 +123,13 @@ def test_a_result_that_is_there_is_taken_up_by_a_run_that_was_cut_off(settings: 
     assert found(again).assessments == found(settings).assessments
 
 
-@pytest.mark.parametrize("damage", some([{"found": b"damaged"}, {"outline": "[]"}, {"made": "2000-01-01"}, None], 2))
+@pytest.mark.parametrize(
+    "damage",
+    [
+        pytest.param(damage, marks=[] if at == 0 else LONG)
+        for at, damage in enumerate(some([{"found": b"damaged"}, {"outline": "[]"}, {"made": "2000-01-01"}, None], 2))
+    ],
+)
 def test_a_result_that_is_damaged_or_lost_is_found_again(damage: dict[str, object] | None, tmp_path: Path) -> None:
     """Noticed where it is read: when its page is drawn again."""
     made = museum_of(tmp_path / "damaged", vases(1, 4))

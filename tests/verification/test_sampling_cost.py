@@ -44,6 +44,7 @@ def found(scenes: list[Scene]) -> list[SamplingCost]:
     return sampling_costs(scenes, [LEVEL], SILENT)
 
 
+@pytest.mark.long("test_what_is_certain_has_no_error")
 def test_each_number_and_the_rule_are_measured(found: list[SamplingCost]) -> None:
     assert [one.samples for one in found[:-1]] == list(NUMBERS)
     assert {one.objects for one in found} == {10}
@@ -52,7 +53,7 @@ def test_each_number_and_the_rule_are_measured(found: list[SamplingCost]) -> Non
     assert all(0.0 <= one.right <= 1.0 for one in found)
 
 
-@pytest.mark.long("test_each_number_and_the_rule_are_measured")
+@pytest.mark.long("test_what_is_certain_has_no_error")
 def test_the_error_is_that_against_a_run_with_other_random_numbers(
     scenes: list[Scene], found: list[SamplingCost], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -71,6 +72,7 @@ def test_the_error_is_that_against_a_run_with_other_random_numbers(
     assert found[0].worst == pytest.approx(float(np.max(np.abs(short - long))), abs=4.0 * 0.008)
 
 
+@pytest.mark.long("test_what_is_certain_has_no_error")
 def test_errors_keep_what_they_state(found: list[SamplingCost]) -> None:
     """Those of independent samples, of which the measured root mean square is half as much again with a
     probability of 1 % at ten objects (chi square: 2.25 times ten degrees of freedom); balanced ones stay below.
@@ -114,6 +116,7 @@ def test_nothing_is_measured_where_there_is_no_object() -> None:
     assert sampling_costs([], [LEVEL], SILENT) == []
 
 
+@pytest.mark.long("test_what_is_certain_has_no_error")
 def test_the_lines_show_every_way(found: list[SamplingCost]) -> None:
     lines = tradeoff_lines(Tradeoff("", KERNEL_VERSION, [], [], [], found), 1e-3)
     assert "Probabilities of harm of 10 objects, against other samples of the same objects:" in lines

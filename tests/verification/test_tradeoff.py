@@ -41,6 +41,7 @@ def of(found: tradeoff.Tradeoff, model: str, kind: str = "step") -> list[tradeof
     return [s for s in found.settings if (s.model, s.kind) == (model, kind)]
 
 
+@pytest.mark.long("test_the_error_is_that_of_the_table_itself")
 def test_every_model_at_every_step(found: tradeoff.Tradeoff) -> None:
     for model in MODELS:
         steps = of(found, model.name)
@@ -50,6 +51,7 @@ def test_every_model_at_every_step(found: tradeoff.Tradeoff) -> None:
         assert all(0.0 <= s.median <= s.p95 <= s.worst for s in steps)
 
 
+@pytest.mark.long("test_the_error_is_that_of_the_table_itself")
 @pytest.mark.parametrize("model", ["swing", "swing_3d"])
 def test_errors_fall_with_the_fourth_power_of_the_step(found: tradeoff.Tradeoff, model: str) -> None:
     """Runge and Kutta: halving the step divides the error by 16; read from 1/1 to 1/4, where rounding is far."""
@@ -57,11 +59,13 @@ def test_errors_fall_with_the_fourth_power_of_the_step(found: tradeoff.Tradeoff,
     assert coarse.median / fine.median == pytest.approx(256.0, rel=0.5)
 
 
+@pytest.mark.long("test_the_error_is_that_of_the_table_itself")
 @pytest.mark.parametrize("model", ["oscillator", "rotational_isolator", "stress", "flexible_stress"])
 def test_a_closed_form_has_no_error(found: tradeoff.Tradeoff, model: str) -> None:
     assert all(s.worst < 1e-10 for s in of(found, model))
 
 
+@pytest.mark.long("test_the_error_is_that_of_the_table_itself")
 def test_more_directions_are_nearer_and_never_beyond(found: tradeoff.Tradeoff, motion: Motion) -> None:
     """Of an oscillator, 10 degrees miss at most 1 - cos 5 = 0.4 % of the peak resultant, 45 degrees 8 %."""
     turned = {s.setting.split()[1]: s for s in of(found, "oscillator", "azimuth")}
@@ -86,6 +90,7 @@ def test_the_error_is_that_of_the_table_itself(motion: Motion) -> None:
     assert history.worst == pytest.approx(16.0 * np.max(np.abs(fast / true - 1.0)), rel=0.3)
 
 
+@pytest.mark.long("test_the_error_is_that_of_the_table_itself")
 def test_charts_and_bounds_are_measured_where_there_are_any(found: tradeoff.Tradeoff) -> None:
     """A chart keeps its tolerance of max(value, 1 % of the largest); what is less than a tenth of it counts too."""
     for model in MODELS:
@@ -96,6 +101,7 @@ def test_charts_and_bounds_are_measured_where_there_are_any(found: tradeoff.Trad
         assert chart.cost < min(s.cost for s in of(found, "sliding"))
 
 
+@pytest.mark.long("test_the_error_is_that_of_the_table_itself")
 def test_the_cheapest_keeps_what_is_wanted(found: tradeoff.Tradeoff) -> None:
     for wanted in (1e-2, 1e-6):
         for name, setting in found.cheapest(wanted).items():
@@ -114,6 +120,7 @@ def test_the_collections_own_objects_are_drawn(motion: Motion) -> None:
     assert one.samples[0].objects == 5
 
 
+@pytest.mark.long("test_the_error_is_that_of_the_table_itself")
 def test_what_was_measured_on_other_kernels_is_forgotten(found: tradeoff.Tradeoff, tmp_path: Path) -> None:
     tradeoff.keep(found, tmp_path)
     again = tradeoff.kept(tmp_path)
@@ -128,6 +135,7 @@ def test_what_was_measured_on_other_kernels_is_forgotten(found: tradeoff.Tradeof
     assert tradeoff.kept(tmp_path) is None
 
 
+@pytest.mark.long("test_the_error_is_that_of_the_table_itself")
 def test_the_report_shows_what_accuracy_costs(found: tradeoff.Tradeoff, tmp_path: Path) -> None:
     workspace(tmp_path)
     settings = load_settings(tmp_path / "kouros.toml")
@@ -142,7 +150,7 @@ def test_the_report_shows_what_accuracy_costs(found: tradeoff.Tradeoff, tmp_path
     assert "oscillator" in page.partition("Solved in closed form")[2][:400]
 
 
-@pytest.mark.long("test_every_model_at_every_step")
+@pytest.mark.long("test_the_error_is_that_of_the_table_itself")
 def test_the_command(tmp_path: Path) -> None:
     words = ["tradeoff", "--site", "demo", "--model", "swing", "--objects", "4", "--error", "1e-4"]
     done = kouros("-q", *words, "--json", folder=tmp_path)
