@@ -49,7 +49,13 @@ main()
 """
 
 
-@pytest.mark.parametrize(("more", "shown"), [((), False), (("--debug",), True)])
+@pytest.mark.parametrize(
+    ("more", "shown"),
+    [
+        ((), False),
+        pytest.param(("--debug",), True, marks=pytest.mark.long("test_a_fault_of_ours_is_not_called_the_users")),
+    ],
+)
 def test_a_fault_of_ours_is_not_called_the_users(tmp_path: Path, more: tuple[str, ...], shown: bool) -> None:
     """Before: exit code 2, "operands could not be broadcast together with shapes (2,) (3,)", and no hint."""
     workspace(tmp_path)

@@ -78,6 +78,7 @@ def station(code: str, latitude: float, longitude: float, channels: Sequence[tup
     return made
 
 
+@pytest.mark.long("test_the_network_s_files_name_station_earthquake_and_distance")
 def test_a_record_whose_files_say_all_needs_no_answer_and_is_never_doubled(tmp_path: Path) -> None:
     """The truth is the manifest that a person wrote for the same files."""
     files = [str(file) for file in sorted(DEMO.glob("CI.CLC*"))]

@@ -264,6 +264,7 @@ def test_an_unknown_file_shows_its_first_line_and_the_way_out(tmp_path: Path) ->
     assert "kouros motions convert FILE --columns" in out
 
 
+@pytest.mark.long("motions/test_several::test_it_is_told_among_the_steps_and_never_refused")
 def test_a_second_earthquake_is_told_where_it_is_seen(tmp_path: Path) -> None:
     """Of the demonstration's record 80 s, and their copy 60 s later, which begins to shake at 92 s."""
     new = tmp_path / "new"

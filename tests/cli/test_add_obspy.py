@@ -24,6 +24,8 @@ SENSITIVITY = 213807.0
 
 SAID = ("--unit", "m/s2", "--processed")
 
+DEPTHS = pytest.mark.long("test_of_two_depths_by_stationxml_the_surface_is_taken")
+
 
 @pytest.fixture(scope="module")
 def real() -> list[obspy.Trace]:
@@ -116,7 +118,8 @@ def test_of_kiknet_the_surface_is_taken_and_the_borehole_told(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("surface", "guess"), [("00", ()), ("10", ("--guess",)), *(SOAK * [("00", ("--guess",)), ("10", ())])]
+    ("surface", "guess"),
+    [("00", ()), pytest.param("10", ("--guess",), marks=DEPTHS), *(SOAK * [("00", ("--guess",)), ("10", ())])],
 )
 def test_of_two_depths_by_stationxml_the_surface_is_taken(tmp_path: Path, surface: str, guess: tuple[str, ...]) -> None:
     """The same instrument under two location codes, 120 m below one another; the folder is given as one."""

@@ -37,6 +37,8 @@ pytestmark = pytest.mark.slow_file
 MORE = [*ROWS, "4,B,Cup,0.1,0.08,0.08"]
 SHEET = "object_number,gallery,height_m,mass_kg\n3,B,0.31,2\n9,B,0.2,\n"
 
+LEFT = pytest.mark.long("test_looking_writes_nothing_beside_a_database_either")
+
 Said = tuple[int, str, str]
 """Exit code, what was printed, and the error or the warnings."""
 
@@ -288,7 +290,7 @@ LOOKS = (
 )
 
 
-@pytest.mark.parametrize("left", ["nothing", "log", "journal"])
+@pytest.mark.parametrize("left", [*(pytest.param(left, marks=LEFT) for left in ("nothing", "log")), "journal"])
 def test_looking_writes_nothing_beside_a_database_either(museum: Path, tmp_path: Path, left: str) -> None:
     """A database in SQLite's mode WAL, and what a process that was killed left beside it: read, and not settled."""
     folder = Path(shutil.copytree(museum, tmp_path / "copy", symlinks=True))

@@ -13,6 +13,7 @@ from tests.museum import kouros, own_site, workspace
 pytestmark = pytest.mark.slow_file
 
 
+@pytest.mark.long("cli/test_select_command::test_select_says_what_is_lacking_and_writes_the_best_only_when_asked")
 def test_list_and_process_write_a_site_that_is_the_same(tmp_path: Path) -> None:
     listed = kouros("motions", "list", "demo", folder=tmp_path)
     assert listed.returncode == 0

@@ -30,6 +30,7 @@ REACHED = {
 SURE_AND_WRONG = {"learn": 3, "held": 0}
 
 
+@pytest.mark.long("collection/test_third_exports::test_layouts_that_nobody_had_tried_are_read_by_the_guess_alone")
 @pytest.mark.parametrize("part", [part for part in REACHED if SOAK or part == "held"])
 def test_fresh_exports_are_read_by_the_guess_alone(part: str) -> None:
     """No height is wrong unsaid, and hardly a class that is said to be 90 % sure."""

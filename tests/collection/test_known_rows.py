@@ -186,6 +186,7 @@ def rows_of(engine: Engine) -> set[tuple[object, ...]]:
         return {tuple(row) for row in connection.execute(select(SOURCE_ROW))}
 
 
+@pytest.mark.long("night/test_incremental::test_a_night_that_finds_only_what_changed_equals_one_from_nothing")
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_a_reading_of_what_changed_finds_what_one_from_nothing_finds(
     seed: int, real: Table, engine: Engine, tmp_path: Path

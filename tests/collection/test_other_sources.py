@@ -110,6 +110,7 @@ def kouros(outside: Path, folder: Path, *words: str) -> str:
     return done.stdout + done.stderr
 
 
+@pytest.mark.long("report/test_further_pages::test_a_page_of_another_package_is_in_the_report_and_in_its_navigation")
 def test_a_source_of_another_package_is_imported_and_a_night_is_run_with_it(outside: Path, tmp_path: Path) -> None:
     museum = tmp_path / "museum"
     museum.mkdir()

@@ -23,6 +23,7 @@ from tests.soak import SOAK
 FOLDER = Path(__file__).parents[1] / "data" / "collections"
 PLAIN = re.compile(r"(its )?[\w ]+(, which lies in plan)?, of the object itself;")
 """How a note of a number begins that nothing more is said of."""
+LONG = pytest.mark.long("test_things_of_150_more_tables")
 NEAR = 0.006
 UNFOUND = ("rmg_images", "gugong")
 """Of files of one and of two rows, whose sizes are taken for their numbers."""
@@ -65,6 +66,7 @@ def is_said(item: Item) -> bool:
     return bool(item.problems) or any(one.note and not PLAIN.match(one.note) for one in item.provenance)
 
 
+@LONG
 @pytest.mark.parametrize("part", [part for part in REACHED if SOAK or part == "held"])
 def test_things_of_museums_pages_are_read_by_the_guess_alone(part: str) -> None:
     """Whatever is not as marked is said, and a class that is said to be 90 % sure is right."""
@@ -90,6 +92,7 @@ ROUNDED = 0.0008
 """m; of inches and centimetres that a museum gives beside each other one is rounded."""
 
 
+@LONG
 @pytest.mark.parametrize("part", [part for part in FRESH if SOAK or part == "held"])
 def test_things_of_forty_more_sites(part: str) -> None:
     rows = rows_of(part, "fresh_pages")
@@ -138,7 +141,14 @@ def is_plan(mark: dict[str, str], item: Item) -> bool:
     return False
 
 
-@pytest.mark.parametrize(("pages", "part"), [table for table in TABLES if SOAK or table[1] == "held"])
+@pytest.mark.parametrize(
+    ("pages", "part"),
+    [
+        pytest.param(*table, marks=LONG) if table == ("sixty_sites", "held") else table
+        for table in TABLES
+        if SOAK or table[1] == "held"
+    ],
+)
 def test_things_of_150_more_tables(pages: str, part: str) -> None:
     """What is said to be 90 % sure is right but for three things, and what is not as marked is said but for five."""
     rows = rows_of(part, pages)
@@ -169,6 +179,7 @@ def test_things_of_150_more_tables(pages: str, part: str) -> None:
     assert all(item.on_display == (mark["display"] == "1") for mark, item in rows if mark["display"] in "01")
 
 
+@LONG
 def test_names_of_things_in_twelve_languages() -> None:
     """Of 3,879 names at least 94 % are taken for the class that was marked, and 95 % for its manner of support.
 

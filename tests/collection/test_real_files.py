@@ -124,6 +124,7 @@ def test_a_guessed_mapping_reads_what_the_preset_reads(name: str) -> None:
         assert found.mapping.columns[field] == preset.columns[field]
 
 
+@pytest.mark.long("test_a_guessed_mapping_reads_what_the_preset_reads")
 def test_a_guess_of_carnegie_sees_that_its_unit_is_the_inch(tmp_path: Path) -> None:
     """Of all rows in `make soak`: what a guess costs grows with them."""
     whole = (Path(load_mapping.__code__.co_filename).parent / "data" / "carnegie_2000.csv").read_bytes()

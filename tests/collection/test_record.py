@@ -49,6 +49,7 @@ def test_every_number_has_a_plausible_range_and_a_reason() -> None:
         assert plausible()[name].reason in SCHEMA["properties"][name]["description"]
 
 
+@pytest.mark.long("collection/test_real_files::test_every_row_is_accounted_for_and_fits_the_schema")
 def test_every_carnegie_item_fits_the_schema() -> None:
     items = list(carnegie().items)
     validator = jsonschema.Draft202012Validator(SCHEMA)

@@ -179,6 +179,7 @@ def test_another_host_needs_somebody_known(museum: Path) -> None:
             load_settings(config)
 
 
+@pytest.mark.long("desk/test_paths::test_a_curator_finds_an_object_sees_why_and_accepts_the_risk")
 def test_the_command_says_what_it_does(museum: Path) -> None:
     refused = kouros("serve", "--host", EVERYWHERE, folder=museum)
     assert refused.returncode == 2

@@ -74,6 +74,7 @@ def test_a_lost_connection_is_told_and_what_was_typed_is_sent_later(museum: Path
     assert [made.why for made in read_decisions(engine_of(museum))] == [WHY]
 
 
+@pytest.mark.long("test_a_lost_connection_is_told_and_what_was_typed_is_sent_later")
 def test_a_session_that_ended_loses_nothing(museum: Path, browser: Chrome) -> None:
     serve(museum, 'identity = "accounts"')
     settings = load_settings(museum / "kouros.toml")

@@ -50,6 +50,7 @@ def open_cells(browser: Chrome, address: str, number: str) -> None:
     sign(browser, "section[aria-labelledby=measure]", "A. Smith")
 
 
+@pytest.mark.long("desk/test_saying::test_a_cell_that_is_no_measure_is_marked_and_nothing_is_saved")
 def test_cells_are_taken_or_come_back_with_what_was_typed(running: str, browser: Chrome, museum: Path) -> None:
     """Lengths in inches and masses in pounds, unless the cell names its unit; refused, nothing of the form is saved."""
     before = item(museum, "1.2")

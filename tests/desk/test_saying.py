@@ -165,6 +165,7 @@ def test_while_a_night_is_at_work_what_was_typed_stays(
     visitor.follow(visitor.said_of("1.1", "/object/measured", got, **{"m.mass_kg": "3"}))
 
 
+@pytest.mark.long("test_a_following_night_takes_it_up")
 def test_a_house_rule_goes_into_the_settings_once(visitor: Visitor, museum: Path) -> None:
     page = visitor.get("/house")
     # What is not offered is not chosen, nor counted.

@@ -83,6 +83,7 @@ def test_there_is_no_page_before_an_earthquake(visitor: Visitor) -> None:
     assert "kouros event" in visitor.get("/event").alert
 
 
+@pytest.mark.long("test_the_second_of_two_is_told_and_nothing_of_either_is_lost")
 @pytest.mark.browser
 def test_a_conservator_taps_what_is_found_and_the_list_is_sorted_anew(
     running: str, browser: Chrome, shaken: Path

@@ -30,6 +30,10 @@ FIRST = DOCS / "tutorials" / "first-night.md"
 ANEW = {DOCS / "tutorials" / "first-record.md", ROOT / "README.md", ROOT / "CONTRIBUTING.md"}
 """Pages that begin in an empty folder."""
 
+LONG = pytest.mark.long("test_what_a_page_tells_to_do_can_be_done")
+SLOW = {"earthquake", "notebook-motions", "own-rules", "plan", "select-motions"}
+"""Pages whose blocks take seconds; the others are done in the same way."""
+
 
 @cache
 def generated() -> dict[str, str]:
@@ -69,7 +73,14 @@ def test_the_first_night_is_as_told(museum: Path) -> None:
     assert (museum / "survey.xlsx").is_file()
 
 
-@pytest.mark.parametrize("page", some((p for p in PAGES if p != FIRST and blocks(p)), 12), ids=lambda p: p.stem)
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, marks=LONG) if page.stem in SLOW else page
+        for page in some((p for p in PAGES if p != FIRST and blocks(p)), 12)
+    ],
+    ids=lambda p: p.stem,
+)
 def test_what_a_page_tells_to_do_can_be_done(page: Path, museum: Path, tmp_path: Path) -> None:
     folder = tmp_path / "museum"
     if page in ANEW:

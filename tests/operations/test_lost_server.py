@@ -39,6 +39,7 @@ def stop_at_once(server: Any) -> None:
         time.sleep(0.05)
 
 
+@pytest.mark.long("operations/test_interruptions::test_a_locked_database_is_named_and_the_report_stays")
 def test_a_server_that_stops_in_the_middle(nights: Nights, tmp_path: Path, server: Any) -> None:
     url = server.get_uri(database="kouros")
     folder = Path(shutil.copytree(nights.folder, tmp_path / "museum", symlinks=True))

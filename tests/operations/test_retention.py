@@ -211,6 +211,7 @@ def test_nothing_is_removed_while_a_run_is_at_work(tmp_path: Path) -> None:
         prune(workspace.settings)
 
 
+@pytest.mark.long("test_age_removes_all_but_the_last_good_one")
 def test_at_random_the_last_good_run_always_stays(tmp_path: Path) -> None:
     """A dozen museums of any history and any limits, every day half of them."""
     chance = random.Random(11)

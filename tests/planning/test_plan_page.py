@@ -148,6 +148,7 @@ def test_what_a_number_hangs_on_stands_beside_it() -> None:
         assert [text for one in plan_view(plan).errands for text in one.told] == [told]
 
 
+@pytest.mark.long("report/test_language::test_no_english_is_left")
 def test_all_words_of_the_page_can_be_translated() -> None:
     """A catalogue that answers in letters of another script leaves no Latin ones but in what the museum wrote."""
     file = BytesIO()

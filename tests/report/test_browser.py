@@ -20,9 +20,15 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.browser
 
+LONG = pytest.mark.long("test_it_opens_without_complaint_and_without_a_sideways_scroll")
+
 
 @pytest.fixture(
-    scope="session", params=("index", "objects", "news", "gallery-101", "salon", "not-on-display", "motion", "method")
+    scope="session",
+    params=(
+        *("index", "gallery-101", "salon", "motion"),
+        *(pytest.param(kind, marks=LONG) for kind in ("objects", "news", "not-on-display", "method")),
+    ),
 )
 def page(request: pytest.FixtureRequest, report: Path) -> Path:
     return next(report.glob(f"{request.param}*.html"))

@@ -97,6 +97,7 @@ def test_sorting_and_filtering(browser: Chrome, page: Path) -> None:
     assert browser.find_element("css selector", "#tools output").text.startswith(f"{len(states)} ")
 
 
+@pytest.mark.long("report/test_demo::test_every_entry_fits_a_printed_page_so_that_none_is_cut")
 def test_paper_cuts_no_picture_in_two(browser: Chrome, record: RunRecord, tmp_path: Path) -> None:
     """Each chart is painted on a ground of a colour that nothing else has: the PDF then fills one rectangle a chart.
 

@@ -57,6 +57,7 @@ from tests.mitigate import scenes
 from . import builder
 from .news_samples import news_of_every_kind
 
+LONG = pytest.mark.long("test_a_real_run_is_translated")
 OPEN, CLOSE = "⟦", "⟧"
 PLACEHOLDER = re.compile(r"%\(\w+\)s|\{\w+\}|<[^>]*>|&\w+;|%%")
 LETTERS = str.maketrans(
@@ -313,7 +314,10 @@ def test_every_phrase_of_a_run_is_extracted() -> None:
     assert {row["why"] for row in table("rules")} - {""} <= known
 
 
-@pytest.mark.parametrize("name", ["BLOCK", "TOWER", "PICTURE", "fragile", "light", "robust"])
+@pytest.mark.parametrize(
+    "name",
+    ["BLOCK", "TOWER", *(pytest.param(name, marks=LONG) for name in ("PICTURE", "fragile", "light", "robust"))],
+)
 def test_a_real_run_is_translated(compiled: GNUTranslations, name: str) -> None:
     """Titles, sentences and outcomes of findings, sentences of advice and titles of its evidence are looked up.
 

@@ -141,6 +141,7 @@ def test_with_nothing_to_do_the_sheet_says_so(tmp_path: Path) -> None:
     assert FOOT.findall(text) == [("1", "1")]
 
 
+@pytest.mark.long("test_each_object_to_act_on_is_on_its_gallerys_sheet_once_and_in_the_order_of_the_page")
 def test_hostile_texts_break_no_sheet(tmp_path: Path) -> None:
     texts = [
         *builder.HOSTILE.values(),

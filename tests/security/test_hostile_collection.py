@@ -59,6 +59,8 @@ EXPORTS = {
 }
 OUTSIDE = "owned-by-a-title"
 
+SAME = pytest.mark.long("test_the_same_from_a_workbook_and_from_a_database")
+
 
 @dataclass
 class Night:
@@ -132,7 +134,7 @@ def test_every_row_is_accounted_for(night: Night) -> None:
     assert s["changes"]["counts"]["inputs"] > payloads.ROWS // 10
 
 
-@pytest.mark.parametrize("kind", ["xlsx", "sql"])
+@pytest.mark.parametrize("kind", [pytest.param("xlsx", marks=SAME), "sql"])
 def test_the_same_from_a_workbook_and_from_a_database(night: Night, tmp_path: Path, kind: str) -> None:
     """Both give what CSV gives, but for characters that no workbook can hold."""
     if kind == "xlsx":
@@ -236,6 +238,7 @@ def test_no_text_steers_a_terminal(night: Night) -> None:
     assert any(STEERING.search(row["title"]) for row in night.table)
 
 
+@pytest.mark.long("report/test_browser::test_no_hostile_text_became_an_element")
 def test_nothing_runs_in_a_browser_and_nothing_leaves_it(night: Night, browser: Chrome) -> None:
     """Every page in Chromium; the control shows that the same payloads do run where they are not escaped."""
     pages = [*sorted(night.report.glob("*.html")), night.folder / "reports" / "index.html"]

@@ -128,6 +128,7 @@ def aged(file: Path, seconds: float = 3600.0) -> Path:
     return file
 
 
+@pytest.mark.long("test_a_night_takes_the_folder_up_and_goes_on")
 def test_files_are_taken_the_oldest_first_and_put_away(museum: Path, inbox: Path) -> None:
     fill(museum / "s.xlsx", {(OBJECTS[0], "height [cm]"): "30"}, into=inbox / "b.xlsx")
     fill(

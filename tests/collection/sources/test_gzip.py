@@ -28,6 +28,7 @@ def test_packed_rows_are_the_rows(name: str, tmp_path: Path) -> None:
     assert packed.source == name
 
 
+@pytest.mark.long("test_packed_rows_are_the_rows")
 def test_a_packed_file_is_recognised_and_guessed_from(tmp_path: Path) -> None:
     (tmp_path / "a.xml.gz").write_bytes(gzip.compress(wrap(record(number="L 1"))))
     assert guess(tmp_path / "a.xml.gz").mapping.source.format == "lido"
