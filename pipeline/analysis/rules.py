@@ -258,14 +258,11 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
 
 
 def _is_only_called_so(title: RuleMatch, classed: RuleMatch, *, unnamed: bool) -> bool:
-    """Whether a title names what is classed as sculpture a picture, or a thing of no shape of its own.
-
-    The kind of thing decides before its title: a bronze Telephone or Still Life is a sculpture, whatever it shows; but
-    a plaster cast of a column is a column.
-    """
-    if classed.rule.object_class not in (*_FIGURES, "bust", "relief"):
-        return False
-    return title.rule.object_class in PICTURES or (unnamed and title.rule.object_class == "object")
+    """Whether a title names what is classed as sculpture a picture, or a thing of no shape of its own: Still Life."""
+    what = title.rule.object_class
+    # A plaster cast of a column, which that is the name of, is a column.
+    called = what in PICTURES or (unnamed and what == "object")
+    return called and classed.rule.object_class in (*_FIGURES, "bust", "relief")
 
 
 def without_name(read: Readings, of: RuleTable | None = None) -> Readings:
@@ -315,11 +312,8 @@ def _narrows(title: RuleMatch, name: RuleMatch, item: Item) -> bool:
 
 def _wordless(item: Item, kinds: frozenset[str], of: RuleTable) -> tuple[RuleMatch | None, RuleMatch | None]:
     """Return the first rule that asks for the classification and no name, and the first that asks for neither."""
-    classed: RuleMatch | None = None
-    for rule in of.classed if kinds else ():
-        if rule.kinds & kinds and rule.fits(item):
-            classed = RuleMatch(rule)
-            break
+    asked = of.classed if kinds else ()
+    classed = next((RuleMatch(rule) for rule in asked if rule.kinds & kinds and rule.fits(item)), None)
     for rule in _made(of, stuff(item.material, item.medium)):
         if all(shape(item) for shape in rule.shapes):
             return classed, RuleMatch(rule)
