@@ -54,6 +54,9 @@ SETTINGS = {"runs = 0": "runs = 1", "reports = 0": "reports = 1", 'file = ""': '
 LONGEST = 60.0
 """Seconds after which a night hangs."""
 
+LAST = 0.3
+"""Height [m] of the vase in the third night."""
+
 _OURS = frozenset({".kouros-kept", ".kouros.lock", ".pages.json", RESERVE})
 
 
@@ -93,10 +96,11 @@ def prepared(folder: Path, site: str) -> Base:
     """Let a museum have its two good nights, and a copy of it the undisturbed third one."""
     folder.mkdir(parents=True)
     workspace(folder, rows(0.4), site=site)
-    for height in (0.4, 0.6, 0.9):
+    # It slides, it may tip, and in the third night it slides again: what is told of it is another each time.
+    for height in (0.4, 0.6, LAST):
         export = "\n".join([COLUMNS, *rows(height)]) + "\n"
         (folder / "export.csv").write_text(export, encoding="utf-8")
-        if height < 0.9:
+        if height != LAST:
             assert within(folder, "run").returncode == 0
     before = objects(folder / "reports" / "latest")
     for old, new in SETTINGS.items():
