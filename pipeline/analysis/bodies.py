@@ -158,7 +158,8 @@ def body(
         None for what a museum's own row says, and for what does not stand, unless it weighs alike however it is held.
     """
     hangs = support in (Support.HUNG, Support.SUSPENDED)
-    if row.own or not (hangs or support in (Support.FREESTANDING, Support.FASTENED)):
+    stands = support in (Support.FREESTANDING, Support.FASTENED)
+    if row.own or not (hangs or stands):
         return None
     text = f"{item.object_name[:READ]} {item.title[:READ]}"
     found = body_of(text, words.partition(":")[0], row.name, material.name, item.height_m or 0.0)

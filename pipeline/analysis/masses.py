@@ -10,6 +10,7 @@ from math import pi
 
 from pipeline.records import Estimate, Item, Origin, Support
 from pipeline.records import phrases as say
+from pipeline.records.phrase import Clause
 from pipeline.tables import Range
 from pipeline.tables.assumed import UNKNOWN
 from pipeline.tables.assumed_rows import Material, ObjectClass
@@ -122,14 +123,10 @@ def mass_of(
     words = f"{item.object_name} {item.title}"
     spread = support is Support.HUNG or (row.support is Support.HUNG and support is Support.FREESTANDING)
     cloth = spread and unframed(item, row.name, material, thick=thick)
-    wall = (_PILE if _CARPET.search(words) else _CLOTH, say.MASS_OF_CLOTH) if cloth else (_FRAMED, say.MASS_OF_FRAMED)
-    above = _CHANDELIER if _CALLED.search(words) else _SUSPENDED
-    face = {Support.HUNG: wall, Support.SUSPENDED: (above, say.MASS_OF_SUSPENDED)}
-    per_area, face_phrase = face.get(support, (None, None))
-    if screen or cloth:
-        per_area, face_phrase = (_SCREEN, say.MASS_OF_SCREEN) if screen else wall
+    face = _of_face(words, support, screen=screen, cloth=cloth)
     by_face = screen or cloth or not by_volume or (not shaped and _airy(box, fill, material, item, support))
-    if per_area and face_phrase and item.height_m and item.width_m and by_face:
+    if face is not None and item.height_m and item.width_m and by_face:
+        per_area, face_phrase = face
         area, (low, best, high) = item.height_m * item.width_m, per_area
         note = face_phrase(mass=per_area)
         return Estimate.assumed(best * area, low * area, high * area, "kg", note, "judgement")
@@ -146,6 +143,21 @@ def mass_of(
     return Estimate.assumed(box * fill.value * density.value, low, high, "kg", note, density.source)
 
 
+def _of_face(
+    words: str, support: Support, *, screen: bool, cloth: bool
+) -> tuple[tuple[float, float, float], Clause] | None:
+    """Return what a square metre of a face weighs, and how that is said; None of what is no face."""
+    if screen:
+        return _SCREEN, say.MASS_OF_SCREEN
+    if cloth:
+        return _PILE if _CARPET.search(words) else _CLOTH, say.MASS_OF_CLOTH
+    if support is Support.HUNG:
+        return _FRAMED, say.MASS_OF_FRAMED
+    if support is Support.SUSPENDED:
+        return _CHANDELIER if _CALLED.search(words) else _SUSPENDED, say.MASS_OF_SUSPENDED
+    return None
+
+
 def unframed(item: Item, object_class: str, material: Material, *, thick: bool = False) -> bool:
     """Say whether what hangs is bare cloth or paper: a scroll, a banner, a tapestry.
 
@@ -159,6 +171,10 @@ def unframed(item: Item, object_class: str, material: Material, *, thick: bool =
         What it is made of.
     thick : bool, optional
         Whether its depth is recorded, as of what is stretched or mounted.
+
+    Returns
+    -------
+    bool
     """
     bare = object_class != FRAMED and not thick
     return material.name == CLOTH and (bare or _SCROLL.search(f"{item.object_name} {item.title}") is not None)

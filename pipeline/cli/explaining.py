@@ -150,22 +150,20 @@ def _reasoning(reasoning: "Reasoning", every: bool) -> Iterator[str]:
         yield f"    note      {finding.note}"
 
 
-def _step(taken: "Taken") -> str:
-    return f"    {taken.step:<10}{taken.motion}, {taken.inputs}: {taken.told or _taken(taken)}"
+def _step(taken: "Taken", more: str = "") -> str:
+    return f"    {taken.step:<10}{taken.motion}, {taken.inputs}: {taken.told or _taken(taken)}{more}"
 
 
 def _steps(taken: Iterable["Taken"]) -> Iterator[str]:
     """Yield the steps of one kind under one motion as one line: of the best estimates, and between which others lie."""
     from pipeline.tools.explain import BEST
 
-    for (motion, step), group in groupby(taken, key=lambda one: (one.motion, one.step)):
+    for _, group in groupby(taken, key=lambda one: (one.motion, one.step)):
         those = list(group)
         first = next((one for one in those if one.inputs.startswith(BEST)), those[0])
+        span = f"{_number(min(one.low for one in those))} to {_number(max(one.high for one in those))}"
         others = len(those) - 1
-        if others:
-            span = f"{_number(min(one.low for one in those))} to {_number(max(one.high for one in those))}"
-            more = f"; with {others} other set{'s' * (others > 1)}: {span}"
-        yield f"    {step:<10}{motion}, {first.inputs}: {first.told or _taken(first)}{more if others else ''}"
+        yield _step(first, f"; with {others} other set{'s' * (others > 1)}: {span}" if others else "")
 
 
 def _taken(taken: "Taken") -> str:

@@ -45,6 +45,7 @@ _CODES = re.compile(
 """A place by its signs: the room, and a case with a shelf in it or a spot, G12.C03.S2 and G12.P01; display cases and
 open display as the British Museum writes them, G12/dc3 and G24/od."""
 _CODE = re.compile(r"[A-Z]{1,4}[ .-]?\d{1,4}")
+"""A case by its sign alone, ahead of a shelf in it: CG-12."""
 _BESIDE = re.compile(
     rf"{_SEPARATOR.pattern}|\s*\+\s*|\s+(?:with|and|mit|und|avec|et|con|com|met|med|z)\s+", re.IGNORECASE
 )
@@ -69,7 +70,6 @@ _SIGNED_CASE = re.compile(r"\s*[A-Z]{1,4}[ .-]?\d{1,4}[a-z]?\s*\(([^()]+)\)")
 """A case by its sign, and what kind of case it is: "CC2 (centre case)"."""
 _CUT_ELSEWISE = frozenset({"pal", "par", "sal", "gal", "mag", "col", "dep"})
 """What is short for other words in places: a palace, a storey, a hall, a gallery, a store."""
-"""A case by its sign alone, ahead of a shelf in it: CG-12."""
 
 _NONE = ("FS", "EXP", "WN", "WE", "WS", "WW")
 """Free-standing, exposed and the four walls, in the column for cases of the Victoria and Albert Museum."""

@@ -25,6 +25,11 @@ class PlaceWords(TableRow):
 
 
 @cache
+def _rows() -> tuple[PlaceWords, ...]:
+    return tuple(checked(PlaceWords, table("place_words"), "place_words.csv", named="kind"))
+
+
+@cache
 def place_words(kind: str) -> tuple[str, ...]:
     """Return the words of a kind, in the order of the table; () for a kind that has none.
 
@@ -33,5 +38,4 @@ def place_words(kind: str) -> tuple[str, ...]:
     kind : str
         As of the column.
     """
-    rows = checked(PlaceWords, table("place_words"), "place_words.csv", named="kind")
-    return tuple(word for row in rows if row.kind == kind for word in row.words)
+    return tuple(word for row in _rows() if row.kind == kind for word in row.words)

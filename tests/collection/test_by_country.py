@@ -7,40 +7,23 @@ height or none where none is stated, and 51 the right support. Seven more (Azerb
 which hardly anything was known: of most only the numbers of their objects were read.
 """
 
-import csv
-from collections import defaultdict
-from functools import cache
 from pathlib import Path
 
 import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.collection.places import NamedPlace, parted
-from pipeline.night.importing import proposed
 from pipeline.records import Item
+from tests.collection.lists import expected, items_of
 
 FOLDER = Path(__file__).parents[1] / "data" / "collections" / "by_country"
 MISSED = 3
 """Rows of all whose class or support is another than a reader's: a chest beside a Slovenian altar, and the like."""
 
 
-@cache
-def _expected() -> dict[str, list[dict[str, str]]]:
-    out = defaultdict(list)
-    with (FOLDER / "expected.csv").open(encoding="utf-8", newline="") as stream:
-        for row in csv.DictReader(stream):
-            out[row["list"]].append(row)
-    return dict(out)
-
-
-@cache
-def _items(name: str) -> dict[str, Item]:
-    return {item.object_number: item for item in proposed(str(FOLDER / f"{name}.csv")).reading.items}
-
-
-@pytest.mark.parametrize("name", _expected())
+@pytest.mark.parametrize("name", expected(FOLDER))
 def test_numbers_sizes_weights_and_flags(name: str) -> None:
-    items, rows = _items(name), _expected()[name]
+    items, rows = items_of(FOLDER, name), expected(FOLDER)[name]
     assert list(items) == [row["number"] for row in rows]
     for row in rows:
         item = items[row["number"]]
@@ -54,8 +37,8 @@ def test_numbers_sizes_weights_and_flags(name: str) -> None:
 
 def test_classes_and_supports() -> None:
     missed = []
-    for name, rows in _expected().items():
-        items = _items(name)
+    for name, rows in expected(FOLDER).items():
+        items = items_of(FOLDER, name)
         for row in rows:
             scene = classify(items[row["number"]])
             able = scene.object_class in row["classes"].split("|"), scene.support.value in row["supports"].split("|")

@@ -6,9 +6,7 @@ into `learn` or `held` by lot. Of `learn` 53 of 79 rows differed in anything at 
 `learn` had been mended, of `fresh` 11 of 36 when both had been; now 23 of 190 do, in what MISSED counts.
 """
 
-import csv
-from collections import Counter, defaultdict
-from functools import cache
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -16,6 +14,7 @@ import pytest
 from pipeline.analysis.classify import classify
 from pipeline.night.importing import proposed
 from pipeline.records import Item
+from tests.collection.lists import expected, items_of
 
 FOLDER = Path(__file__).parents[1] / "data" / "collections" / "by_place"
 NEAR = 1e-3
@@ -26,23 +25,8 @@ a railway lantern as one that hangs; a sledge in a building that is a store, whe
 the guess says."""
 
 
-@cache
-def _expected() -> dict[str, list[dict[str, str]]]:
-    out = defaultdict(list)
-    with (FOLDER / "expected.csv").open(encoding="utf-8", newline="") as stream:
-        for row in csv.DictReader(stream):
-            out[row["list"]].append(row)
-    return dict(out)
-
-
-@cache
-def _items(name: str) -> dict[str, Item]:
-    (path,) = FOLDER.glob(f"{name}.*")
-    return {item.object_number: item for item in proposed(str(path)).reading.items}
-
-
 def _item(row: dict[str, str]) -> Item:
-    items = _items(row["list"])
+    items = items_of(FOLDER, row["list"])
     return next(items[number] for number in row["number"].split("|") if number in items)
 
 
@@ -77,20 +61,20 @@ def _differs(row: dict[str, str]) -> set[str]:
     return {kind for kind, right in told.items() if not right}
 
 
-@pytest.mark.parametrize("name", _expected())
+@pytest.mark.parametrize("name", expected(FOLDER))
 def test_every_object_of_a_list_is_read(name: str) -> None:
-    assert len(_items(name)) == len(_expected()[name])
+    assert len(items_of(FOLDER, name)) == len(expected(FOLDER)[name])
 
 
 def test_places_cases_sizes_and_how_things_stand() -> None:
-    differing = {(name, row["number"]): _differs(row) for name, rows in _expected().items() for row in rows}
+    differing = {(name, row["number"]): _differs(row) for name, rows in expected(FOLDER).items() for row in rows}
     many = Counter(kind for kinds in differing.values() for kind in kinds)
     assert not {kind: n for kind, n in many.items() if n > MISSED.get(kind, 0)}, differing
 
 
 def test_a_remark_on_a_place_is_no_place() -> None:
     """Where "Bemerkungen Standort" was it, what had no remark was not on display, and nothing said so."""
-    assert {item.gallery for item in _items("kantonsmuseum").values()} == {
+    assert {item.gallery for item in items_of(FOLDER, "kantonsmuseum").values()} == {
         "EG / R 1.3", "1. OG / R 2.1", "1. OG / R 2.4", "Depot Nord", "EG / R 1.1"
     }  # fmt: skip
 
@@ -103,7 +87,7 @@ def test_a_building_that_may_be_a_store_is_told() -> None:
 def test_signs_of_a_designer_are_cases_plinths_and_walls() -> None:
     found = proposed(str(FOLDER / "designers_schedule.csv"))
     assert any("by their signs, 'C01' a showcase" in one for one in found.guess.doubts)
-    sharing = {number: item.case for number, item in _items("designers_schedule").items()}
+    sharing = {number: item.case for number, item in items_of(FOLDER, "designers_schedule").items()}
     assert sharing["4"] == sharing["5"] == "C01"
     assert sharing["11"] == sharing["14"] == sharing["18"] == ""
 

@@ -12,16 +12,13 @@ The thirty that came last (cairo_style to turin_style, see the README there) dif
 eight of them were read only when the others had been mended: 37 of 69 rows.
 """
 
-import csv
-from collections import defaultdict
-from functools import cache
 from pathlib import Path
 
 import pytest
 
 from pipeline.analysis.classify import classify
-from pipeline.night.importing import proposed
 from pipeline.records import Item
+from tests.collection.lists import expected, items_of
 
 FOLDER = Path(__file__).parents[1] / "data" / "collections" / "by_use"
 MISSED = 5
@@ -30,24 +27,9 @@ store; a statue and a false door of which only remarks say how they are held, a 
 SIDES = ("height_cm", "width_cm", "depth_cm", "mass_kg")
 
 
-@cache
-def _expected() -> dict[str, list[dict[str, str]]]:
-    out = defaultdict(list)
-    with (FOLDER / "expected.csv").open(encoding="utf-8", newline="") as stream:
-        for row in csv.DictReader(stream):
-            out[row["list"]].append(row)
-    return dict(out)
-
-
-@cache
-def _items(name: str) -> dict[str, Item]:
-    (path,) = FOLDER.glob(f"{name}.*")
-    return {item.object_number: item for item in proposed(str(path)).reading.items}
-
-
-@pytest.mark.parametrize("name", _expected())
+@pytest.mark.parametrize("name", expected(FOLDER))
 def test_numbers_places_sizes_and_weights(name: str) -> None:
-    items, rows = _items(name), _expected()[name]
+    items, rows = items_of(FOLDER, name), expected(FOLDER)[name]
     assert list(items) == [row["number"] for row in rows]
     for row in rows:
         item = items[row["number"]]
@@ -64,8 +46,8 @@ def test_numbers_places_sizes_and_weights(name: str) -> None:
 
 def test_classes_supports_and_furniture() -> None:
     missed = []
-    for name, rows in _expected().items():
-        items = _items(name)
+    for name, rows in expected(FOLDER).items():
+        items = items_of(FOLDER, name)
         for row in rows:
             scene = classify(items[row["number"]])
             found = (scene.object_class, scene.support.value, scene.furniture.value if scene.furniture else "None")

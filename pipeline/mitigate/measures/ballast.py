@@ -104,9 +104,7 @@ class Ballast(Measure):
             return N_("its base, its mass or its centre of gravity is not known")
         if not one.rocks:
             return N_("it does not rock: a lower centre of gravity does not help")
-        if self.row.classes and scene.object_class not in self.row.classes:
-            return N_("objects of its kind have no room for ballast")
-        if _lies(scene.item):
+        if (self.row.classes and scene.object_class not in self.row.classes) or _lies(scene.item):
             return N_("objects of its kind have no room for ballast")
         if touched(scene.item, runner.values) in SEEN_THROUGH:
             return N_("ballast in glass is seen, and presses on its wall")
